@@ -1,0 +1,2 @@
+//! The `mrtphys` program.
+fn main() {}

@@ -1,0 +1,127 @@
+//! Stage 2: bounding spheres and boxes of everything, once a step. Bounds are conservative for the exact routines: whatever
+//! a pair routine would call a contact overlaps in bounds.
+
+use crate::math::{Mat3, Real, Vec3};
+
+/// A sphere; radius below zero: empty, meets nothing; infinite: meets everything that is not empty.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Ball {
+    /// centre \[m\]
+    pub center: Vec3,
+    /// radius \[m\]
+    pub radius: Real,
+}
+
+impl Ball {
+    /// The empty ball.
+    pub const EMPTY: Ball = Ball { center: Vec3::ZERO, radius: -1.0 };
+
+    /// Whether the ball is empty.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.radius < 0.0
+    }
+
+    /// Whether two balls meet; touching counts. **The** bounding-sphere test: every broad phase uses this very expression,
+    /// so that they agree to the last bit.
+    #[inline]
+    pub fn meets(&self, o: &Ball) -> bool {
+        let d = self.center - o.center;
+        let r = self.radius + o.radius;
+        d.length_squared() <= r * r && self.radius >= 0.0 && o.radius >= 0.0
+    }
+}
+
+/// An axis-parallel box; bounds may be infinite; `min > max` in any axis: empty.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// lower corner \[m\]
+    pub min: Vec3,
+    /// upper corner \[m\]
+    pub max: Vec3,
+}
+
+impl Aabb {
+    /// The empty box.
+    pub const EMPTY: Aabb = Aabb { min: Vec3::splat(Real::INFINITY), max: Vec3::splat(Real::NEG_INFINITY) };
+    /// All of space.
+    pub const EVERYWHERE: Aabb = Aabb { min: Vec3::splat(Real::NEG_INFINITY), max: Vec3::splat(Real::INFINITY) };
+
+    /// The box round a ball.
+    #[inline]
+    pub fn of_ball(b: &Ball) -> Aabb {
+        let r = Vec3::splat(b.radius);
+        Aabb { min: b.center - r, max: b.center + r }
+    }
+
+    /// The smallest box that holds all the points.
+    pub fn of_points(points: impl IntoIterator<Item = Vec3>) -> Aabb {
+        points.into_iter().fold(Aabb::EMPTY, |b, p| Aabb { min: b.min.min(p), max: b.max.max(p) })
+    }
+
+    /// The smallest box that holds both.
+    #[inline]
+    pub fn union(&self, o: &Aabb) -> Aabb {
+        Aabb { min: self.min.min(o.min), max: self.max.max(o.max) }
+    }
+
+    /// Whether the boxes meet; touching counts.
+    #[inline]
+    pub fn meets(&self, o: &Aabb) -> bool {
+        self.min.x <= o.max.x
+            && o.min.x <= self.max.x
+            && self.min.y <= o.max.y
+            && o.min.y <= self.max.y
+            && self.min.z <= o.max.z
+            && o.min.z <= self.max.z
+    }
+
+    /// Whether the box holds nothing.
+    pub fn is_empty(&self) -> bool {
+        self.min.x > self.max.x || self.min.y > self.max.y || self.min.z > self.max.z
+    }
+}
+
+/// Bounds of a boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoundaryBounds {
+    /// bounding sphere, radius infinite for half-spaces and planes; for a limit quadrangle that of its four points
+    pub ball: Ball,
+    /// bounding box of the face itself; [`Aabb::EVERYWHERE`] for half-spaces and planes
+    pub face: Aabb,
+    /// unit normal into the allowed side and its offset: what lies at `normal . x < offset` is behind. `None` for a
+    /// two-sided plane or a bounded shape
+    pub behind: Option<(Vec3, Real)>,
+}
+
+impl BoundaryBounds {
+    /// Whether the boundary's pair routine must be asked about a body with this bounding sphere: the sphere of the face is
+    /// met (the thesis's test), or the body reaches behind the face, wherever that is. Inside a convex set of limits the
+    /// second says nothing new, so the counts stay the thesis's; outside it catches what has crossed.
+    #[inline]
+    pub fn reaches(&self, body: &Ball) -> bool {
+        if body.is_empty() {
+            return false;
+        }
+        if self.ball.radius == Real::INFINITY || self.ball.meets(body) {
+            return true;
+        }
+        self.reaches_behind(body)
+    }
+
+    /// Whether the body reaches behind the face.
+    #[inline]
+    pub fn reaches_behind(&self, body: &Ball) -> bool {
+        match self.behind {
+            Some((normal, offset)) => normal.dot(body.center) - offset <= body.radius,
+            None => false,
+        }
+    }
+}
+
+/// Bounding sphere of a placed shape.
+#[inline]
+pub fn placed_ball(local: &Ball, position: Vec3, rotation: &Mat3) -> Ball {
+    Ball { center: position + *rotation * local.center, radius: local.radius }
+}

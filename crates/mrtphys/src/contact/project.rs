@@ -1,0 +1,1 @@
+//! Overlaps of inelastic bodies are projected out.

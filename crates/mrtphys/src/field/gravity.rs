@@ -1,0 +1,4 @@
+//! gravity.
+/// EarthGravity
+#[derive(Clone, Copy, Debug)]
+pub struct EarthGravity;

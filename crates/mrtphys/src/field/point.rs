@@ -1,0 +1,4 @@
+//! point.
+/// PointField
+#[derive(Clone, Copy, Debug)]
+pub struct PointField;

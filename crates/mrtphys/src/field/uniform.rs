@@ -1,0 +1,4 @@
+//! uniform.
+/// UniformField
+#[derive(Clone, Copy, Debug)]
+pub struct UniformField;

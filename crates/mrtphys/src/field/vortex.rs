@@ -1,0 +1,4 @@
+//! vortex.
+/// VortexField
+#[derive(Clone, Copy, Debug)]
+pub struct VortexField;

@@ -1,0 +1,1 @@
+//! One contact after the other.

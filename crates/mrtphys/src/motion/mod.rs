@@ -1,0 +1,9 @@
+//! Stage 1b: motion between impacts. `translation` carries the integrators, `rotation` the free rotation, which conserves
+//! energy and world angular momentum to round-off for any inertia tensor at any spin.
+
+pub mod rotation;
+pub mod translation;
+pub mod advance;
+
+pub use advance::advance;
+pub use rotation::rotate_free;

@@ -1,0 +1,4 @@
+//! The pair table.
+/// The resolved table.
+#[derive(Clone, Debug)]
+pub struct PairTable {}

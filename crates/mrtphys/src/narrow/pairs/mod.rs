@@ -1,0 +1,1 @@
+//! Pair routines, one file each.

@@ -1,0 +1,1 @@
+//! Separating axes of convex pieces.

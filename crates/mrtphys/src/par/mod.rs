@@ -1,0 +1,1 @@
+//! Parallel loops whose results do not depend on the number of threads.

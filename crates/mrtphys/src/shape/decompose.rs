@@ -1,0 +1,1 @@
+//! Convex pieces of a non-convex polyhedron.

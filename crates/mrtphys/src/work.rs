@@ -1,0 +1,51 @@
+//! Scratch: dropping it between steps changes nothing.
+
+use crate::bounds::{Aabb, Ball};
+use crate::broad::{BroadPhase, Candidates};
+use crate::contact::ContactList;
+use crate::counters::Counters;
+use crate::event::ImpactEvent;
+use crate::math::{Mat3, Vec3};
+use std::time::Duration;
+
+/// Scratch of a world.
+#[derive(Default)]
+pub struct Work {
+    /// acceleration of each body by the force fields at the end of the motion \[m/s2\]; empty where there are none
+    pub accelerations: Vec<Vec3>,
+    /// rotation matrix of each body, by slot; empty where every body is a sphere
+    pub rotations: Vec<Mat3>,
+    /// bounding spheres in place
+    pub balls: Vec<Ball>,
+    /// bounding boxes in place, where the broad phase wants them
+    pub boxes: Vec<Aabb>,
+    /// the broad phase with its memory
+    pub broad: Option<Box<dyn BroadPhase>>,
+    /// candidate pairs
+    pub candidates: Candidates,
+    /// contacts of the step
+    pub contacts: ContactList,
+    /// impacts of the step, where they are recorded
+    pub events: Vec<ImpactEvent>,
+    /// counts of the last step
+    pub counters: Counters,
+    /// time spent in each stage of the last step
+    pub stages: StageTimes,
+}
+
+/// Wall time per stage. Measured only where asked for: it never influences a result.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StageTimes {
+    /// fields and motion
+    pub motion: Duration,
+    /// bounding spheres and boxes
+    pub bounds: Duration,
+    /// candidate pairs
+    pub broad: Duration,
+    /// contacts
+    pub narrow: Duration,
+    /// impulses
+    pub impact: Duration,
+    /// overlaps projected out
+    pub projection: Duration,
+}

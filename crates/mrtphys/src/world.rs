@@ -1,0 +1,3 @@
+//! The face of the library.
+/// A world.
+pub struct World {}
