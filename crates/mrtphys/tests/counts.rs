@@ -127,7 +127,11 @@ fn the_adaptive_tree_compares_what_shares_a_branch() {
                 for _ in 0..2 {
                     let found = count(&mut tree, &case, scale);
                     let shape = [tree.node_count() as u64, u64::from(tree.depth())];
-                    assert_eq!((found, shape), (expected(v, "tests", "detect"), expected(v, "nodes", "depth")), "{what}");
+                    assert_eq!(
+                        (found, shape),
+                        (expected(v, "tests", "detect"), expected(v, "nodes", "depth")),
+                        "{what}"
+                    );
                     assert_eq!(tree.cells().iter().map(|c| c.objects as usize).sum::<usize>(), case.balls.len() + 6);
                 }
             }

@@ -118,8 +118,13 @@ impl Frame {
             low[k] * (1.0 - part) + high[k] * part
         };
         let at = |k: usize| (key >> (10 * k)) & 1023;
-        let corner =
-            |d: u32| Vec3::new(edge(0, (at(0) + d) << self.shift), edge(1, (at(1) + d) << self.shift), edge(2, (at(2) + d) << self.shift));
+        let corner = |d: u32| {
+            Vec3::new(
+                edge(0, (at(0) + d) << self.shift),
+                edge(1, (at(1) + d) << self.shift),
+                edge(2, (at(2) + d) << self.shift),
+            )
+        };
         Aabb { min: corner(0), max: corner(1) }
     }
 }
@@ -214,7 +219,8 @@ impl RegularGrid {
         }
         let along = u64::from(((resolution - 1) >> shift) + 1);
         let lists = (along * along * along).min(listings).max(1);
-        let comparisons = u128::from(listings) * u128::from(listings / lists) + u128::from(wide) * self.ranges.len() as u128;
+        let comparisons =
+            u128::from(listings) * u128::from(listings / lists) + u128::from(wide) * self.ranges.len() as u128;
         listings + u64::try_from(comparisons / 8).unwrap_or(u64::MAX / 2)
     }
 
@@ -324,5 +330,116 @@ impl BroadPhase for RegularGrid {
         keys.sort_unstable();
         let cells = keys.chunk_by(|a, b| a == b);
         cells.map(|k| Cell { bounds: frame.bounds(k[0]), depth: 0, objects: k.len() as u32 }).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bounds::{Ball, BoundaryBounds};
+
+    fn view<'a>(balls: &'a [Ball], fixed: &'a [bool], boundaries: &'a [BoundaryBounds], epoch: u64) -> BoundsView<'a> {
+        BoundsView { balls, boxes: &[], fixed, boundaries, epoch }
+    }
+
+    fn search(grid: &mut RegularGrid, view: &BoundsView<'_>) -> Candidates {
+        let mut out = Candidates::default();
+        grid.find(view, &mut out);
+        out
+    }
+
+    /// Small and large balls in the cube from 0 to 1.
+    fn balls(n: usize, large: Real, spread: Real) -> Vec<Ball> {
+        let part = |k: usize, by: Real| (k as Real * by).fract();
+        let ball = |k: usize| Ball {
+            center: Vec3::new(part(k, 0.754_877), part(k, 0.569_840), part(k, 0.245_122)),
+            radius: large * crate::math::powi(part(k, 0.618_034), 4) + spread,
+        };
+        (0..n).map(ball).collect()
+    }
+
+    /// Pairs that share a cell, from the definition: cell by cell.
+    fn pairs_of_a_common_cell(grid: &RegularGrid, view: &BoundsView<'_>) -> u64 {
+        let n = grid.ranges.len();
+        let mut count = 0;
+        for a in 0..n {
+            for b in a + 1..n {
+                let both = grid.scene.is_immovable(view, a as u32) && grid.scene.is_immovable(view, b as u32);
+                let common = (0..3).all(|k| {
+                    let (a, b) = (&grid.ranges[a], &grid.ranges[b]);
+                    (a.low[k]..=a.high[k]).any(|cell| (b.low[k]..=b.high[k]).contains(&cell))
+                });
+                count += u64::from(common && !both);
+            }
+        }
+        count
+    }
+
+    #[test]
+    fn neither_blocks_nor_wide_objects_change_the_count() {
+        let (mut blocks, mut wide) = (0, 0);
+        for (n, large, spread) in [(300, 0.02, 0.001), (300, 0.5, 0.01), (200, 0.01, 0.05), (40, 0.4, 0.0)] {
+            let balls = balls(n, large, spread);
+            let fixed: Vec<bool> = (0..n).map(|k| k % 5 == 0).collect();
+            for resolution in [1, 3, 16, 60, 250, 1024] {
+                let mut grid = RegularGrid::new(Some(resolution));
+                let view = view(&balls, &fixed, &[], 0);
+                let out = search(&mut grid, &view);
+                assert_eq!(out.sphere_tests, pairs_of_a_common_cell(&grid, &view), "{n} {large} {resolution}");
+                blocks += grid.frame.unwrap().shift;
+                wide += grid.wide.len();
+                assert!((grid.movable.len() + grid.immovable.len()) as u64 <= LISTINGS * n as u64 + FREE_LISTINGS);
+            }
+        }
+        assert!(blocks > 0 && wide > 0, "both must have come up");
+    }
+
+    #[test]
+    fn immovable_objects_are_sorted_in_once_while_the_extent_stays() {
+        let face = Aabb { min: Vec3::splat(-1.0), max: Vec3::splat(2.0) };
+        let wall = BoundaryBounds { ball: Ball { center: Vec3::splat(0.5), radius: 3.0 }, face, behind: None };
+        let mut all = balls(50, 0.1, 0.01);
+        let fixed: Vec<bool> = (0..50).map(|k| k % 3 == 0).collect();
+        let mut grid = RegularGrid::new(None);
+        for step in 0..5 {
+            all[1].center.x = 0.1 * step as Real;
+            search(&mut grid, &view(&all, &fixed, &[wall], 0));
+            assert_eq!(grid.sorted_in, 1);
+        }
+        search(&mut grid, &view(&all, &fixed, &[wall], 1));
+        assert_eq!(grid.sorted_in, 2, "a new epoch");
+        all[1].center.x = 5.0;
+        search(&mut grid, &view(&all, &fixed, &[wall], 1));
+        assert_eq!(grid.sorted_in, 3, "another extent");
+        assert_eq!(grid.immovable.len(), grid.immovable.iter().collect::<std::collections::BTreeSet<_>>().len());
+    }
+
+    #[test]
+    fn objects_on_the_border_of_cells_are_in_both() {
+        // Eight cells of length 1: a box from 2 to 3 meets cells 2 and 3, the one from 3 to 4 cells 3 and 4.
+        let ball = |x: Real, radius: Real| Ball { center: Vec3::new(x, 0.0, 0.0), radius };
+        let all = [ball(2.5, 0.5), ball(3.5, 0.5), ball(4.5, 0.25), ball(0.25, 0.25), ball(7.5, 0.5)];
+        let mut grid = RegularGrid::new(Some(8));
+        let out = search(&mut grid, &view(&all, &[], &[], 0));
+        let along: Vec<_> = grid.ranges.iter().map(|r| (r.low[0], r.high[0])).collect();
+        assert_eq!(along, [(2, 3), (3, 4), (4, 4), (0, 0), (7, 7)]);
+        assert_eq!((out.sphere_tests, out.pairs), (2, vec![[0, 1]]));
+    }
+
+    #[test]
+    fn cells_are_where_the_objects_are() {
+        let all = balls(100, 0.0, 0.01);
+        let mut grid = RegularGrid::new(None);
+        search(&mut grid, &view(&all, &[], &[], 0));
+        let cells = grid.cells();
+        assert!(!cells.is_empty());
+        for ball in &all {
+            let (own, mut listed) = (Aabb::of_ball(ball), 0);
+            for cell in &cells {
+                listed += u32::from(cell.bounds.meets(&own));
+            }
+            assert!((1..=27).contains(&listed));
+        }
+        assert_eq!(cells.iter().map(|c| c.objects as usize).sum::<usize>(), grid.movable.len());
     }
 }

@@ -85,9 +85,8 @@ impl Fence {
     /// [`BoundaryBounds::reaches_behind`], since products with 0 and 1 are exact.
     fn may_be_crossed(&self, body: &Ball) -> bool {
         self.oblique
-            || (0..3).any(|k| {
-                body.center[k] - self.low[k] <= body.radius || -body.center[k] - self.high[k] <= body.radius
-            })
+            || (0..3)
+                .any(|k| body.center[k] - self.low[k] <= body.radius || -body.center[k] - self.high[k] <= body.radius)
     }
 }
 
