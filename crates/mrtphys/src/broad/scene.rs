@@ -191,7 +191,8 @@ impl Scene {
             for b in 0..self.objects() as u32 {
                 let done = a == b || self.boundless[..k].binary_search(&b).is_ok();
                 let empty = b < self.bodies && view.balls[b as usize].is_empty();
-                if !done && !empty && !(self.is_immovable(view, a) && self.is_immovable(view, b)) {
+                let immovable = self.is_immovable(view, a) && self.is_immovable(view, b);
+                if !(done || empty || immovable) {
                     self.test(view, a, b, out);
                 }
             }

@@ -74,7 +74,7 @@ impl AdaptiveTree {
     }
 
     /// Looks up where every object is. Objects that have come in start at the root, those that have gone are taken out.
-    fn place(&mut self, view: &BoundsView<'_>) {
+    pub(super) fn place(&mut self, view: &BoundsView<'_>) {
         self.spans.resize(self.scene.objects(), Span::NOWHERE);
         for object in 0..self.spans.len() {
             let listed = self.scene.listed_box(view, object, self.reach);
@@ -136,7 +136,7 @@ impl AdaptiveTree {
 
     /// Moves every object that has left its cell up as far as necessary (`moveUpObjects`). On the way all nodes that are not
     /// marked with the opposite of the direction of leaving are skipped: their cells end at the same side.
-    fn move_up(&mut self, view: &BoundsView<'_>, settled: bool) {
+    pub(super) fn move_up(&mut self, view: &BoundsView<'_>, settled: bool) {
         let near = nearness(&self.arena.nodes[ROOT as usize]);
         for object in 0..self.spans.len() as u32 {
             let start = self.arena.node_of[object as usize];

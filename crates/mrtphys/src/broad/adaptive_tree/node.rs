@@ -119,11 +119,11 @@ impl Node {
     /// having left, and so does being nearer than `near`.
     #[inline]
     pub fn moved(&self, object: &Span, near: &[Real; 3]) -> Direction {
-        for k in 0..3 {
-            if object.low[k] <= self.cell.low[k] + near[k] {
+        for (k, &near) in near.iter().enumerate() {
+            if object.low[k] <= self.cell.low[k] + near {
                 return Direction::HIGH[k];
             }
-            if object.high[k] >= self.cell.high[k] - near[k] {
+            if object.high[k] >= self.cell.high[k] - near {
                 return Direction::LOW[k];
             }
         }

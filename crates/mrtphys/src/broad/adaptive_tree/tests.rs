@@ -146,7 +146,7 @@ fn walls_on_the_border_are_inside_the_first_root() {
 fn what_is_immovable_stays_unless_the_tree_changes_round_it() {
     let mut balls: Vec<Ball> =
         (0..64).map(|k| Ball { center: Vec3::new((k % 8) as Real, (k / 8) as Real, 0.0), radius: 0.25 }).collect();
-    let fixed: Vec<bool> = (0..64).map(|k| k % 8 == 0 || k % 8 == 7 || k < 8 || k >= 56).collect();
+    let fixed: Vec<bool> = (0..64).map(|k| k % 8 == 0 || k % 8 == 7 || !(8..56).contains(&k)).collect();
     let mut tree = AdaptiveTree::new(4, 16);
     find(&mut tree, &view_of(&balls, &fixed, &[]));
     let before = tree.arena.node_of.clone();
@@ -174,4 +174,31 @@ fn freed_nodes_are_used_again() {
         }
     }
     assert!(tree.arena.nodes.len() <= 4 * most, "{} places for at most {most} nodes", tree.arena.nodes.len());
+}
+
+#[test]
+fn risen_objects_stop_at_the_first_cell_that_holds_them() {
+    let mut seed = 21;
+    let mut balls: Vec<Ball> = (0..300).map(|_| Ball { center: point(&mut seed), radius: 1e-3 }).collect();
+    balls.extend([Vec3::ZERO, Vec3::splat(1.0)].map(|center| Ball { center, radius: 1e-3 }));
+    let mut tree = AdaptiveTree::new(1, 30);
+    find(&mut tree, &view_of(&balls, &[], &[]));
+    let before = tree.arena.node_of.clone();
+    for ball in &mut balls[..300] {
+        ball.center = ball.center * 0.9 + point(&mut seed) * 0.1;
+    }
+    let view = view_of(&balls, &[], &[]);
+    tree.place(&view);
+    tree.move_up(&view, true);
+    let near = node::nearness(&tree.arena.nodes[ROOT as usize]);
+    let mut risen = 0;
+    for (object, &start) in before.iter().enumerate() {
+        let mut n = start;
+        while tree.arena.nodes[n as usize].moved(&tree.spans[object], &near) != node::Direction::No {
+            n = tree.arena.nodes[n as usize].parent;
+        }
+        assert_eq!(tree.arena.node_of[object], n);
+        risen += u32::from(n != start);
+    }
+    assert!(risen > 50);
 }
