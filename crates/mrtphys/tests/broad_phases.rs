@@ -130,6 +130,10 @@ fn boundaries(low: f64, high: f64, dice: &mut Dice) -> Vec<BoundaryBounds> {
     if dice.one_in(2) {
         all.push(BoundaryBounds { ball, face, behind: None });
     }
+    if dice.one_in(4) {
+        // Somebody's shape that knows its sphere but not its box.
+        all.push(BoundaryBounds { ball, face: Aabb::EVERYWHERE, behind: None });
+    }
     all
 }
 
