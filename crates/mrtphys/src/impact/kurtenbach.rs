@@ -31,7 +31,7 @@ fn point_momentum(party: &Party) -> Vec3 {
 
 /// The sensible reading of (59) to (62): `|p.N| N + phi (p - (p.N) N)`, p the difference of the point momenta, N from a to b.
 /// The absolute value keeps the direction of the normal part where p points backwards (a rear-end hit on a slow heavy body).
-fn thesis_direction(e: &Encounter) -> Option<Vec3> {
+pub(super) fn thesis_direction(e: &Encounter) -> Option<Vec3> {
     let p = point_momentum(&e.a) - point_momentum(&e.b);
     let along = p.dot(e.normal);
     let tangential = p - e.normal * along;
@@ -48,7 +48,7 @@ fn literal_direction(e: &Encounter) -> Option<Vec3> {
 }
 
 /// Equations (63) to (65): `(v.N) N + phi (v - (v.N) N)`, not normalized.
-fn weighted_velocity(e: &Encounter) -> Vec3 {
+pub(super) fn weighted_velocity(e: &Encounter) -> Vec3 {
     let v = e.relative_velocity();
     let perpendicular = e.normal * v.dot(e.normal);
     perpendicular + (v - perpendicular) * e.friction
@@ -94,7 +94,7 @@ pub struct KurtenbachLiteral;
 
 impl KurtenbachLiteral {
     /// The impulse on a as printed, for approaching and for separating pairs; `None` where the formula is 0/0 or overflows.
-    fn printed(e: &Encounter) -> Option<Vec3> {
+    pub(super) fn printed(e: &Encounter) -> Option<Vec3> {
         if !e.has_immovable() {
             return e.impulse_along(literal_direction(e)?);
         }

@@ -9,6 +9,8 @@ pub mod sequential;
 pub mod reflection;
 mod delassus;
 mod cone;
+#[cfg(test)]
+mod tests;
 
 use crate::def::FrictionLaw;
 use crate::math::{Mat3, Real, Vec3};

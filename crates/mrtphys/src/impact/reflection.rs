@@ -48,7 +48,7 @@ impl GroupBody {
     /// Whether an impulse changes its motion.
     #[inline]
     pub fn is_movable(&self) -> bool {
-        self.inverse_mass > 0.0
+        self.inverse_mass > 0.0 || self.inverse_inertia != Mat3::ZERO
     }
 }
 

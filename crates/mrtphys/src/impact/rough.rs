@@ -21,7 +21,7 @@ impl ImpactLaw for Rough {
 }
 
 /// The direction of the impulse.
-fn direction(e: &Encounter) -> Option<Vec3> {
+pub(super) fn direction(e: &Encounter) -> Option<Vec3> {
     let q = solve(e, e.relative_velocity())?;
     let perpendicular = e.normal * q.dot(e.normal);
     (perpendicular + (q - perpendicular) * e.friction).try_normalize()
