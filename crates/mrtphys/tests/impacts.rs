@@ -103,13 +103,19 @@ fn guarded_laws_match_the_reference() {
             );
             let energy = |key: &str| expected[key].as_f64().unwrap();
             let total = energy("Wlin") + energy("Wrot");
-            assert!((wl - energy("Wlin")).abs() <= 1e-9 * total && (wr - energy("Wrot")).abs() <= 1e-9 * total, "{context}");
+            assert!(
+                (wl - energy("Wlin")).abs() <= 1e-9 * total && (wr - energy("Wrot")).abs() <= 1e-9 * total,
+                "{context}"
+            );
             assert!(response.energy_change.abs() <= 1e-13 * total, "{context}");
             compared += 1;
         }
     }
     // Enough of each kind was seen for the test to mean something.
-    assert!(compared == 504 && fallbacks == 23 && unanswered == 32 && left_out == 0, "{compared} {fallbacks} {unanswered} {left_out}");
+    assert!(
+        compared == 504 && fallbacks == 23 && unanswered == 32 && left_out == 0,
+        "{compared} {fallbacks} {unanswered} {left_out}"
+    );
 }
 
 /// Everything that a random encounter is made of.
@@ -201,7 +207,8 @@ fn kinetic(p: &Party, l: Vec3) -> Real {
 fn energies(e: &Encounter, j: Vec3) -> (Real, Real) {
     let (a, b) = (e.a, e.b);
     let before = kinetic(&a, a.angular_momentum) + kinetic(&b, b.angular_momentum);
-    let after = kinetic(&after(&a, j), a.angular_momentum + a.r.cross(j)) + kinetic(&after(&b, -j), b.angular_momentum - b.r.cross(j));
+    let after = kinetic(&after(&a, j), a.angular_momentum + a.r.cross(j))
+        + kinetic(&after(&b, -j), b.angular_momentum - b.r.cross(j));
     (before, after)
 }
 
@@ -332,7 +339,12 @@ fn powers_of_two_pass_through_exactly() {
             for mass in [1.0, length * length * length] {
                 let big = Encounter { a: scaled(&e.a, length, mass), b: scaled(&e.b, length, mass), ..e };
                 // Speeds alone: angular velocity scales too, inertia stays.
-                let faster = |p: &Party| Party { v: p.v * length, w: p.w * length, angular_momentum: p.angular_momentum * length, ..*p };
+                let faster = |p: &Party| Party {
+                    v: p.v * length,
+                    w: p.w * length,
+                    angular_momentum: p.angular_momentum * length,
+                    ..*p
+                };
                 let fast = Encounter { a: faster(&e.a), b: faster(&e.b), ..e };
                 for law in LAWS {
                     let law = make(law);
@@ -379,7 +391,8 @@ fn contact_memory_switches_the_heuristics_friction_off() {
 #[test]
 fn hot_loop_gives_the_bits_of_the_frictionless_law() {
     check(1000, |e| {
-        let still = |p: &Party| Party { inverse_inertia: Mat3::ZERO, w: Vec3::ZERO, angular_momentum: Vec3::ZERO, ..*p };
+        let still =
+            |p: &Party| Party { inverse_inertia: Mat3::ZERO, w: Vec3::ZERO, angular_momentum: Vec3::ZERO, ..*p };
         let e = Encounter { a: still(&e.a), b: still(&e.b), ..e };
         let j = frictionless_spheres(e.normal, [e.a.v, e.b.v], [e.a.inverse_mass, e.b.inverse_mass], e.restitution);
         match (j, respond(&e, make(FrictionLaw::Frictionless).as_ref())) {
@@ -394,7 +407,8 @@ fn hot_loop_gives_the_bits_of_the_frictionless_law() {
 #[test]
 fn what_cannot_be_answered_is_left_alone() {
     let ball = round(1.0, 0.4, Vec3::X, Vec3::ZERO, Vec3::X);
-    let e = Encounter { a: ball, b: Party::IMMOVABLE, normal: Vec3::X, friction: 0.5, restitution: 1.0, persistent: false };
+    let e =
+        Encounter { a: ball, b: Party::IMMOVABLE, normal: Vec3::X, friction: 0.5, restitution: 1.0, persistent: false };
     for law in LAWS {
         let law = make(law);
         let both_fixed = Encounter { a: Party::IMMOVABLE, ..e };
@@ -443,7 +457,14 @@ fn eccentric_rod_with_much_friction_gains_nothing() {
             angular_momentum: Vec3::ZERO,
         };
         for friction in [0.3, 1.0, 5.0, 1e6] {
-            let e = Encounter { a: rod, b: Party::IMMOVABLE, normal: -Vec3::Y, friction, restitution: 1.0, persistent: false };
+            let e = Encounter {
+                a: rod,
+                b: Party::IMMOVABLE,
+                normal: -Vec3::Y,
+                friction,
+                restitution: 1.0,
+                persistent: false,
+            };
             let r = respond(&e, make(FrictionLaw::Coulomb).as_ref()).unwrap();
             let (before, after) = energies(&e, r.impulse_on_a);
             assert!(after <= before * (1.0 + 1e-14), "{step} {friction}");
@@ -467,7 +488,14 @@ fn superball_on_the_floor() {
     for (radius, vx, vy) in [(1.0, 1.0, 1.0), (0.3, -2.5, 0.01), (7.0, 1e-3, 4.0)] {
         let j = 0.4 * 2.0 * radius * radius;
         let ball = round(2.0, j, Vec3::new(vx, -vy, 0.0), Vec3::ZERO, Vec3::new(0.0, -radius, 0.0));
-        let e = Encounter { a: ball, b: Party::IMMOVABLE, normal: -Vec3::Y, friction: 1.0, restitution: 1.0, persistent: false };
+        let e = Encounter {
+            a: ball,
+            b: Party::IMMOVABLE,
+            normal: -Vec3::Y,
+            friction: 1.0,
+            restitution: 1.0,
+            persistent: false,
+        };
         let r = respond(&e, make(FrictionLaw::Rough).as_ref()).unwrap();
         let out = both_after(&e, &r).a;
         assert!(!r.fallback);
@@ -482,7 +510,14 @@ fn superball_on_the_floor() {
 fn printed_wall_law_loses_what_the_closed_form_says() {
     for phi in [0.1, 0.5, 0.9] {
         let ball = round(1.5, 0.2, Vec3::new(0.8, -1.0, 0.3), Vec3::new(0.1, -0.4, 2.0), Vec3::new(0.0, -0.5, 0.0));
-        let e = Encounter { a: ball, b: Party::IMMOVABLE, normal: -Vec3::Y, friction: phi, restitution: 1.0, persistent: false };
+        let e = Encounter {
+            a: ball,
+            b: Party::IMMOVABLE,
+            normal: -Vec3::Y,
+            friction: phi,
+            restitution: 1.0,
+            persistent: false,
+        };
         let r = respond(&e, make(FrictionLaw::KurtenbachLiteral).as_ref()).unwrap();
         let v = e.relative_velocity();
         let t = v - e.normal * v.dot(e.normal);
@@ -531,7 +566,8 @@ fn galilean_cannon() {
     for (ratio, height) in [(3.0, 4.0), (10.0, 6.950_413_223_140_496), (100.0, 8.763_944_711_302_813)] {
         let v = 1.0;
         // The heavy ball has bounced off the floor, the light one is still coming down.
-        let up = frictionless_spheres(-Vec3::X, [Vec3::X * -v, Vec3::ZERO], [1.0 / ratio, 0.0], 1.0).unwrap() / ratio - v;
+        let up =
+            frictionless_spheres(-Vec3::X, [Vec3::X * -v, Vec3::ZERO], [1.0 / ratio, 0.0], 1.0).unwrap() / ratio - v;
         let [_, light] = strike([ratio, 1.0], [up, -v]).unwrap();
         assert!((light * light / (v * v) / height - 1.0).abs() < 1e-12, "{ratio}: {}", light * light);
     }

@@ -122,8 +122,9 @@ mod tests {
             ([5.0, -2.0, 1.0], [0.1, 7.0], 1e-6),
         ];
         for (t, g, limit) in cases {
-            let energy =
-                |p: [Real; 2]| g[0] * p[0] + g[1] * p[1] + 0.5 * (t[0] * p[0] * p[0] + t[2] * p[1] * p[1]) + t[1] * p[0] * p[1];
+            let energy = |p: [Real; 2]| {
+                g[0] * p[0] + g[1] * p[1] + 0.5 * (t[0] * p[0] * p[0] + t[2] * p[1] * p[1]) + t[1] * p[0] * p[1]
+            };
             let best = disc_minimum(t, g, limit).unwrap();
             assert!(best[0].hypot(best[1]) <= limit * (1.0 + 1e-15));
             let scale = energy(best).abs();

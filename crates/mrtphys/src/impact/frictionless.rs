@@ -1,6 +1,6 @@
 //! The frictionless impact, thesis section 3.8.2, equations (41) to (53).
 
-use super::{Encounter, Impulse, ImpactLaw};
+use super::{Encounter, ImpactLaw, Impulse};
 
 /// The impulse acts along the contact normal alone.
 ///

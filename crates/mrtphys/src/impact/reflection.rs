@@ -166,8 +166,8 @@ struct Rounds<'a> {
     answered: Vec<bool>,
     /// forest of bodies that hang together in this round
     parent: Vec<usize>,
-    /// sums of impulses by body; zero between parts
-    impulses: Vec<[Vec3; 2]>,
+    /// the change of velocity of the part in hand
+    direction: Direction,
     cone: Cone,
 }
 
@@ -186,7 +186,7 @@ impl<'a> Rounds<'a> {
             frozen: vec![false; n],
             answered: vec![false; n],
             parent: (0..bodies.len()).collect(),
-            impulses: vec![[Vec3::ZERO; 2]; bodies.len()],
+            direction: Direction::new(bodies.len()),
             cone: Cone::default(),
         }
     }
@@ -290,12 +290,11 @@ impl<'a> Rounds<'a> {
             let spent = sweep(&self.columns, members, &self.approach, bodies, &mut x, self.work_left / 10);
             self.work_left = self.work_left.saturating_sub(spent.max(1));
         }
-        let mut direction = Direction { impulses: &mut self.impulses };
-        let square = direction.gather(&self.columns, members, &x, bodies);
+        let square = self.direction.gather(&self.columns, members, &x, bodies);
         let gain: Real = members.iter().zip(&x).map(|(&k, x)| x * self.approach[k]).sum();
         let c = (1.0 + self.restitution(members, &x)) * gain / square;
         let c = if c.is_finite() && c > 0.0 { c } else { 0.0 };
-        Direction { impulses: &mut self.impulses }.apply(&self.columns, members, c, bodies);
+        self.direction.apply(c, bodies);
         for (&k, x) in members.iter().zip(&x) {
             self.outcome.impulses[k] += c * x;
             self.answered[k] |= *x > 0.0;
@@ -331,7 +330,7 @@ impl<'a> Rounds<'a> {
         let answered = std::mem::replace(&mut self.answered, vec![false; self.contacts.len()]);
         let members: Vec<usize> = (0..answered.len()).filter(|&k| answered[k] && !self.frozen[k]).collect();
         let n = members.len();
-        if n < 2 || n > DENSE_LIMIT {
+        if !(2..=DENSE_LIMIT).contains(&n) {
             return;
         }
         assemble(&mut self.cone, &self.columns, &members, &self.approach, bodies);
@@ -349,11 +348,8 @@ impl<'a> Rounds<'a> {
         self.work_left = self.work_left.saturating_sub(self.cone.work);
         let y: Vec<Real> = self.cone.x.iter().zip(&scale).map(|(y, s)| y / s).collect();
         let total: Real = self.cone.x.iter().sum();
-        let mut direction = Direction { impulses: &mut self.impulses };
-        let square = direction.gather(&self.columns, &members, &y, bodies) / largest;
-        for part in &mut self.impulses {
-            *part = [Vec3::ZERO; 2];
-        }
+        let square = self.direction.gather(&self.columns, &members, &y, bodies) / largest;
+        self.direction.clear();
         // The hull's distance from zero, against the round-off of a sum of n unit columns.
         let tolerance = super::ROUND_OFF * 8.0 * n as Real * total;
         if square <= tolerance * tolerance {

@@ -59,7 +59,8 @@ fn unguarded_formulas_match_the_reference() {
             };
             let is_literal = column.ends_with("literal");
             assert!(!is_literal || wall == (column == "inf_literal"));
-            let found = if is_literal { KurtenbachLiteral::printed(&e) } else { direction.and_then(|n| e.impulse_along(n)) };
+            let found =
+                if is_literal { KurtenbachLiteral::printed(&e) } else { direction.and_then(|n| e.impulse_along(n)) };
             if ill {
                 left_out += 1;
                 continue;
