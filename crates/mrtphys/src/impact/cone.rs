@@ -156,18 +156,14 @@ impl Cone {
         self.s.extend(self.free.iter().map(|&k| self.b[k]));
         self.substitute();
         let first = self.s.clone();
-        for i in 0..m {
-            let row = self.free[i] * self.n;
-            let mut r = self.b[self.free[i]];
-            for j in 0..m {
-                r -= self.a[row + self.free[j]] * first[j];
-            }
-            self.s[i] = r;
+        for (s, &k) in self.s.iter_mut().zip(&self.free) {
+            let row = &self.a[k * self.n..(k + 1) * self.n];
+            *s = self.free.iter().zip(&first).fold(self.b[k], |r, (&l, x)| r - row[l] * x);
         }
         self.work += (m * m) as u64;
         self.substitute();
-        for i in 0..m {
-            self.s[i] += first[i];
+        for (s, first) in self.s.iter_mut().zip(&first) {
+            *s += first;
         }
     }
 
