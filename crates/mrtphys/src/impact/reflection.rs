@@ -120,6 +120,9 @@ pub fn reflect(group: Group<'_>, budget: u64) -> Outcome {
     let mut next_search = patience;
     loop {
         rounds.look(bodies);
+        if rounds.overflow {
+            break;
+        }
         if rounds.active.is_empty() {
             rounds.outcome.decided = rounds.outcome.jammed == 0 || !rounds.frozen_approach(bodies);
             break;
@@ -138,7 +141,7 @@ pub fn reflect(group: Group<'_>, budget: u64) -> Outcome {
         rounds.outcome.rounds += 1;
     }
     let finite = |b: &GroupBody| b.v.is_finite() && b.w.is_finite();
-    if !bodies.iter().all(finite) || !rounds.outcome.impulses.iter().all(|j| j.is_finite()) {
+    if rounds.overflow || !bodies.iter().all(finite) || !rounds.outcome.impulses.iter().all(|j| j.is_finite()) {
         bodies.copy_from_slice(&before);
         return Outcome { impulses: vec![0.0; contacts.len()], ..Outcome::default() };
     }
@@ -152,6 +155,8 @@ struct Rounds<'a> {
     outcome: Outcome,
     /// multiplications left
     work_left: u64,
+    /// a number is not finite
+    overflow: bool,
     /// contacts with e < 1 are answered as e = 0
     collapse: bool,
     /// approach speed of each contact in this round
@@ -179,6 +184,7 @@ impl<'a> Rounds<'a> {
             columns: contacts.iter().map(|c| Column::new(c, bodies)).collect(),
             outcome: Outcome { impulses: vec![0.0; n], ..Outcome::default() },
             work_left: budget.saturating_mul(WORK_PER_ANSWER),
+            overflow: false,
             collapse: false,
             approach: vec![0.0; n],
             active: Vec::new(),
@@ -201,6 +207,7 @@ impl<'a> Rounds<'a> {
             }
             let (u, noise) = column.approach(bodies);
             self.approach[k] = u;
+            self.overflow |= !(u.is_finite() && noise.is_finite());
             let e = self.contacts[k].restitution;
             if u > noise {
                 self.active.push(k);
@@ -292,7 +299,10 @@ impl<'a> Rounds<'a> {
         }
         let square = self.direction.gather(&self.columns, members, &x, bodies);
         let gain: Real = members.iter().zip(&x).map(|(&k, x)| x * self.approach[k]).sum();
-        let c = (1.0 + self.restitution(members, &x)) * gain / square;
+        // At the inner problem's solution the quotient is 1; where it underflows, only that is left to say.
+        let quotient = if square > Real::MIN_POSITIVE { gain / square } else { 1.0 };
+        let c = (1.0 + self.restitution(members, &x)) * quotient;
+        self.overflow |= !c.is_finite();
         let c = if c.is_finite() && c > 0.0 { c } else { 0.0 };
         self.direction.apply(c, bodies);
         for (&k, x) in members.iter().zip(&x) {
@@ -318,6 +328,10 @@ impl<'a> Rounds<'a> {
                 least = crate::math::min(least, own(k));
                 most = crate::math::max(most, own(k));
             }
+        }
+        if !(weights > 0.0) {
+            // Everything underflowed: the least of them is safe.
+            return members.iter().fold(1.0, |e, &k| crate::math::min(e, own(k)));
         }
         if least >= most { most } else { (sum / weights).clamp(least, most) }
     }
