@@ -274,24 +274,23 @@ mod tests {
         }
     }
 
-    /// A right side that is no velocity's, by a little: the problem has no minimum along a dependent column. The answer must
-    /// stay that of the independent ones instead of growing without bounds.
+    /// A jam whose right side is no velocity's, by a little: with column 2 = -(column 0 + column 1) and b off by 1e-10, the
+    /// objective falls for ever along (1, 1, 1). The answer must stay that of the independent columns.
     #[test]
-    fn dependent_columns_do_not_blow_up_on_round_off() {
+    fn jammed_columns_do_not_blow_up_on_round_off() {
         let mut cone = Cone::default();
         for seed in 0..200 {
             problem(&mut cone, 6, 6, seed);
-            // Column 2 := column 0 + column 1, and the right side off by 1e-10.
             let n = cone.n;
             for k in (0..n).filter(|&k| k != 2) {
-                let sum = cone.a[k * n] + cone.a[k * n + 1];
+                let sum = -(cone.a[k * n] + cone.a[k * n + 1]);
                 (cone.a[k * n + 2], cone.a[2 * n + k]) = (sum, sum);
             }
-            cone.a[2 * n + 2] = cone.a[2] + cone.a[n + 2];
-            cone.b[2] = (cone.b[0] + cone.b[1]) * (1.0 - 1e-10);
+            cone.a[2 * n + 2] = -(cone.a[2] + cone.a[n + 2]);
+            cone.b[2] = -(cone.b[0] + cone.b[1]) + 1e-10 * (cone.b[0].abs() + cone.b[1].abs());
             cone.solve();
             let largest = cone.x.iter().fold(0.0, |m: Real, &x| crate::math::max(m, x));
-            assert!(largest < 1e4, "{seed}: {:?}", cone.x);
+            assert!(largest < 1e3, "{seed}: {:?}", cone.x);
         }
     }
 
