@@ -236,7 +236,7 @@ mod tests {
         assert_eq!(LetBack::from_entries(m.entries().copied()), Some(m.clone()));
         assert_eq!(LetBack::from_entries(m.entries().copied().collect::<Vec<_>>().into_iter().rev()), None);
         assert_eq!((m.home_side(3, 2), m.home_side(3, 4)), (-1.0, 1.0));
-        [0, 2, 4].map(|s| m.forget(s));
+        [0, 2, 4].into_iter().for_each(|s| m.forget(s));
         assert_eq!(m, LetBack::default());
     }
 }

@@ -70,7 +70,7 @@ impl Vec3 {
     #[inline]
     pub fn try_normalize(self) -> Option<Vec3> {
         let largest = self.max_abs();
-        if !(largest > 0.0) || !largest.is_finite() {
+        if !(largest > 0.0) || !self.is_finite() {
             return None;
         }
         // A power of two, so that the scaling itself is exact and a scene scaled by 2^k gives the same unit vector.

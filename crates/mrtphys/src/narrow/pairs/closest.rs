@@ -52,23 +52,30 @@ pub(crate) struct Nearest {
 /// compared. `None` for a polyhedron without surface.
 pub(crate) fn on_polyhedron(poly: &Polyhedron, p: Vec3) -> Option<Nearest> {
     let mut best: Option<Nearest> = None;
-    let mut offer = |point: Vec3, feature: u32, outward: &dyn Fn() -> Vec3| {
-        let squared = (point - p).length_squared();
-        if best.is_none_or(|b| squared < b.squared) {
-            best = Some(Nearest { point, squared, outward: outward(), feature });
-        }
-    };
     let corner = |i: u32| poly.corners[i as usize];
     for (i, e) in poly.edges.iter().enumerate() {
         let point = on_segment(p, corner(e.ends[0]), corner(e.ends[1]));
         let normal = |f: u32| poly.faces[f as usize].normal;
-        offer(point, 2 * i as u32, &|| normal(e.faces[0]) + normal(e.faces[1]));
+        offer(&mut best, p, point, 2 * i as u32, || normal(e.faces[0]) + normal(e.faces[1]));
+    }
+    // On an edge, as far as round-off can tell: a face beside it would win or lose by chance.
+    let size = poly.ball.radius + p.length();
+    if best.is_some_and(|b| is_round_off(b.squared.sqrt(), size)) {
+        return best;
     }
     for (i, t) in poly.triangles.iter().enumerate() {
         let [a, b, c] = t.map(corner);
-        offer(on_triangle(p, [a, b, c]), 2 * i as u32 + 1, &|| (b - a).cross(c - a));
+        offer(&mut best, p, on_triangle(p, [a, b, c]), 2 * i as u32 + 1, || (b - a).cross(c - a));
     }
     best
+}
+
+/// Takes a point that is nearer to `p` than the best so far.
+fn offer(best: &mut Option<Nearest>, p: Vec3, point: Vec3, feature: u32, outward: impl Fn() -> Vec3) {
+    let squared = (point - p).length_squared();
+    if best.is_none_or(|b| squared < b.squared) {
+        *best = Some(Nearest { point, squared, outward: outward(), feature });
+    }
 }
 
 /// Whether a point is in a polyhedron or on its surface, in the polyhedron's coordinates.

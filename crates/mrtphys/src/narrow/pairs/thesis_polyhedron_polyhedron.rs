@@ -118,3 +118,38 @@ fn reach(body: &Placed<'_>, poly: &Polyhedron, direction: Vec3) -> Real {
     let most = poly.corners.iter().fold(Real::NEG_INFINITY, |m, c| max(m, local.dot(*c)));
     direction.dot(body.position) + most
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const A: Vec3 = Vec3::new(0.1, 0.7, -0.3);
+    const B: Vec3 = Vec3::new(1.3, -0.2, 0.9);
+
+    /// Two triangles with the common side A B, and segments through points of that side: whatever round-off does to the
+    /// points, no segment passes between the two.
+    #[test]
+    fn nothing_slips_between_two_triangles() {
+        let (left, right) = (Vec3::new(-0.4, -0.9, 0.2), Vec3::new(1.9, 1.1, 0.35));
+        for i in 1..2000 {
+            let on_side = A + (B - A) * (i as Real / 2000.0);
+            let (p, q) = (on_side + Vec3::new(0.3, -0.1, 0.77), on_side - Vec3::new(0.3, -0.1, 0.77));
+            let found = [[A, B, left], [B, A, right]].map(|t| crossing(p, q, t));
+            let x = found[0].or(found[1]).expect("through the common side");
+            assert!((x - on_side).length() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn touching_counts_and_lying_in_the_plane_does_not() {
+        let t = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        let inside = Vec3::new(0.25, 0.25, 0.0);
+        assert_eq!(crossing(inside, inside + Vec3::Z, t), Some(inside));
+        assert_eq!(crossing(inside + Vec3::Z, inside, t), Some(inside));
+        assert_eq!(crossing(Vec3::X, Vec3::new(1.0, 0.0, -1.0), t), Some(Vec3::X));
+        assert_eq!(crossing(inside + Vec3::Z, inside + Vec3::Z * 0.5, t), None);
+        assert_eq!(crossing(Vec3::new(2.0, 0.0, 1.0), Vec3::new(2.0, 0.0, -1.0), t), None);
+        assert_eq!(crossing(Vec3::new(-1.0, 0.25, 0.0), Vec3::new(1.0, 0.25, 0.0), t), None);
+        assert_eq!(crossing(Vec3::splat(Real::NAN), inside, t), None);
+    }
+}
