@@ -8,7 +8,7 @@ pub(crate) fn on_segment(p: Vec3, a: Vec3, b: Vec3) -> Vec3 {
     let d = b - a;
     let along = (p - a).dot(d);
     let whole = d.length_squared();
-    if !(along > 0.0) {
+    if along <= 0.0 {
         a
     } else if along >= whole {
         b

@@ -1,7 +1,7 @@
 //! Two spheres, or whatever is taken as its bounding sphere (thesis, section 6.3.6). Exact for spheres.
 
 use crate::bounds::Ball;
-use crate::math::{Vec3, max};
+use crate::math::{Real, Vec3, max};
 use crate::narrow::{Placed, Touches};
 
 /// How two balls touch.
@@ -13,7 +13,7 @@ pub(crate) struct Meeting {
     /// the point of the second ball that is deepest in the first \[m\]
     pub p2: Vec3,
     /// overlap along the normal \[m\]
-    pub depth: f64,
+    pub depth: Real,
 }
 
 /// The normal of two balls whose centres coincide. Nothing tells one direction from another; a fixed one keeps the result

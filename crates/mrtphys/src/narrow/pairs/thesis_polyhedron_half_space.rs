@@ -2,7 +2,7 @@
 
 use super::half_space_sphere::normal_of;
 use super::sphere_sphere;
-use crate::math::Vec3;
+use crate::math::{Real, Vec3};
 use crate::narrow::{Placed, Touches};
 use crate::shape::Polyhedron;
 
@@ -30,7 +30,7 @@ pub(super) fn deepest_corner(corners: &[Vec3], body: &Placed<'_>, wall: &Placed<
     // N.(x + R c - P) = N.(x - P) + (R^T N).c: one product per corner instead of a rotation.
     let offset = normal.dot(body.position - wall.position);
     let local_normal = body.rotation.transpose_mul(normal);
-    let mut deepest: Option<(usize, f64)> = None;
+    let mut deepest: Option<(usize, Real)> = None;
     for (i, c) in corners.iter().enumerate() {
         let d = offset + local_normal.dot(*c);
         if deepest.is_none_or(|(_, least)| d < least) {

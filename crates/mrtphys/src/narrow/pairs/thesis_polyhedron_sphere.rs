@@ -19,7 +19,7 @@ pub fn touch(body: &Placed<'_>, sphere: &Placed<'_>, out: &mut Touches) {
     let gap = center - nearest.point;
     let inside = holds(poly, center);
     let distance = if inside { -gap.length() } else { gap.length() };
-    if !(distance <= r) {
+    if distance > r || distance.is_nan() {
         return;
     }
     // A centre on the surface has no direction from its closest point: the surface's own normal there.

@@ -13,7 +13,7 @@ pub fn touch(body: &Placed<'_>, sphere: &Placed<'_>, out: &mut Touches) {
         return thesis_sphere_sphere::touch(body, sphere, out);
     };
     let r = sphere.ball.radius;
-    if !(r >= 0.0 && r.is_finite()) {
+    if r < 0.0 || !r.is_finite() {
         return;
     }
     let center = body.rotation.transpose_mul(sphere.ball.center - body.position);
@@ -23,7 +23,7 @@ pub fn touch(body: &Placed<'_>, sphere: &Placed<'_>, out: &mut Touches) {
     let nearest = if (q - center).length_squared() < (p - center).length_squared() { q } else { p };
     let gap = center - nearest;
     let distance = gap.length();
-    if !(distance <= r) {
+    if distance > r || distance.is_nan() {
         return;
     }
     let on_it = is_round_off(distance, quad.ball.radius + center.length());
