@@ -79,6 +79,19 @@ const SHARED: [Row; 5] = [
     ("plane", "plane", "never", pairs::never::touch),
 ];
 
+/// True normals and manifolds.
+const EXACT: [Row; 9] = [
+    ("body", "polyhedron", "sphere-polyhedron", pairs::sphere_polyhedron::touch),
+    ("body", "quadrangle", "sphere-quadrangle", pairs::sphere_quadrangle::touch),
+    ("polyhedron", "polyhedron", "polyhedron-polyhedron", pairs::polyhedron_polyhedron::touch),
+    ("polyhedron", "quadrangle", "polyhedron-quadrangle", pairs::polyhedron_quadrangle::touch),
+    ("polyhedron", "half-space", "polyhedron-half-space", pairs::polyhedron_half_space::touch),
+    ("polyhedron", "plane", "polyhedron-plane", pairs::plane::polyhedron),
+    ("quadrangle", "quadrangle", "quadrangle-quadrangle", pairs::quadrangle_quadrangle::touch),
+    ("quadrangle", "half-space", "quadrangle-half-space", pairs::quadrangle_half_space::touch),
+    ("quadrangle", "plane", "quadrangle-plane", pairs::plane::quadrangle),
+];
+
 /// The thesis's own routines (sections 6.3.6, 6.6.2, 6.6.3, 6.7). It has none for a quadrangle and a polyhedron, or for two
 /// quadrangles: the second is then taken as its bounding sphere.
 const THESIS: [Row; 9] = [
@@ -177,6 +190,3 @@ impl Kinds {
         self.id(name).ok_or_else(|| Error::UnknownKind { name: name.into() })
     }
 }
-
-/// True normals and manifolds. PLACE OF THE EXACT ROUTINES: the thesis's stand in until those are there.
-const EXACT: [Row; 9] = THESIS;

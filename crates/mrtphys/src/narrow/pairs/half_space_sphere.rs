@@ -14,6 +14,17 @@ pub(crate) fn normal_of(wall: &Placed<'_>) -> Option<Vec3> {
     Some(*wall.rotation * local)
 }
 
+/// What answers a pair of which a routine does not know one type: bounding spheres, or the half-space (second) and the
+/// bounding sphere of the body (first).
+pub(super) fn bounding_spheres(a: &Placed<'_>, b: &Placed<'_>, out: &mut Touches) {
+    if normal_of(b).is_none() {
+        return sphere_sphere::touch(a, b, out);
+    }
+    let first = out.list.len();
+    touch(b, a, out);
+    out.flip_from(first);
+}
+
 /// First the half-space, then the sphere. With D = C - P the sphere is free if D.N > r; touching is contact, and so is being
 /// behind, however far. The contact point is the deepest point of the sphere, C - r N.
 pub fn touch(wall: &Placed<'_>, body: &Placed<'_>, out: &mut Touches) {

@@ -7,6 +7,13 @@
 pub mod half_space_sphere;
 pub mod never;
 pub mod plane;
+pub mod polyhedron_half_space;
+pub mod polyhedron_polyhedron;
+pub mod polyhedron_quadrangle;
+pub mod quadrangle_half_space;
+pub mod quadrangle_quadrangle;
+pub mod sphere_polyhedron;
+pub mod sphere_quadrangle;
 pub mod sphere_sphere;
 pub mod thesis_polyhedron_half_space;
 pub mod thesis_polyhedron_polyhedron;

@@ -3,7 +3,10 @@
 //! [`LetBack`](crate::contact::let_back::LetBack)), not reconstructed from the previous position as in the thesis: c - v dt is
 //! wrong as soon as v changed in the step.
 
-use super::{half_space_sphere, sphere_sphere, thesis_polyhedron_half_space, thesis_quadrangle_half_space};
+use super::{
+    half_space_sphere, polyhedron_half_space, quadrangle_half_space, sphere_sphere, thesis_polyhedron_half_space,
+    thesis_quadrangle_half_space,
+};
 use crate::narrow::{Placed, Touches};
 use crate::shape::{HalfSpace, LimitPlane};
 
@@ -37,6 +40,14 @@ macro_rules! body_and_plane {
     };
 }
 
+body_and_plane! {
+    /// First the polyhedron, then the plane: its deepest corners.
+    polyhedron, polyhedron_half_space::touch
+}
+body_and_plane! {
+    /// First the quadrangle, then the plane: its deepest corners.
+    quadrangle, quadrangle_half_space::touch
+}
 body_and_plane! {
     /// First the polyhedron, then the plane: the thesis's deepest corner.
     thesis_polyhedron, thesis_polyhedron_half_space::touch

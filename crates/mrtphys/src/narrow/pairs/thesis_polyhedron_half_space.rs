@@ -1,7 +1,6 @@
 //! A polyhedron and a half-space as in the thesis (section 6.7.2): the contact point is a corner.
 
-use super::half_space_sphere::normal_of;
-use super::sphere_sphere;
+use super::half_space_sphere::{bounding_spheres, normal_of};
 use crate::math::{Real, Vec3};
 use crate::narrow::{Placed, Touches};
 use crate::shape::Polyhedron;
@@ -11,21 +10,14 @@ use crate::shape::Polyhedron;
 pub fn touch(body: &Placed<'_>, wall: &Placed<'_>, out: &mut Touches) {
     match body.shape.downcast::<Polyhedron>() {
         Some(p) => deepest_corner(&p.corners, body, wall, out),
-        None => bounding_sphere(body, wall, out),
+        None => bounding_spheres(body, wall, out),
     }
-}
-
-/// A body of unknown shape as its bounding sphere.
-pub(super) fn bounding_sphere(body: &Placed<'_>, wall: &Placed<'_>, out: &mut Touches) {
-    let first = out.list.len();
-    super::half_space_sphere::touch(wall, body, out);
-    out.flip_from(first);
 }
 
 /// Reports the deepest of the corners, if it is not in front of the half-space.
 pub(super) fn deepest_corner(corners: &[Vec3], body: &Placed<'_>, wall: &Placed<'_>, out: &mut Touches) {
     let Some(normal) = normal_of(wall) else {
-        return sphere_sphere::touch(body, wall, out);
+        return bounding_spheres(body, wall, out);
     };
     // N.(x + R c - P) = N.(x - P) + (R^T N).c: one product per corner instead of a rotation.
     let offset = normal.dot(body.position - wall.position);

@@ -1,6 +1,7 @@
 //! A quadrangle and a half-space as in the thesis (section 6.7.2): the contact point is a corner.
 
-use super::thesis_polyhedron_half_space::{bounding_sphere, deepest_corner};
+use super::half_space_sphere::bounding_spheres;
+use super::thesis_polyhedron_half_space::deepest_corner;
 use crate::narrow::{Placed, Touches};
 use crate::shape::Quadrangle;
 
@@ -8,6 +9,6 @@ use crate::shape::Quadrangle;
 pub fn touch(body: &Placed<'_>, wall: &Placed<'_>, out: &mut Touches) {
     match body.shape.downcast::<Quadrangle>() {
         Some(q) => deepest_corner(&q.corners, body, wall, out),
-        None => bounding_sphere(body, wall, out),
+        None => bounding_spheres(body, wall, out),
     }
 }
