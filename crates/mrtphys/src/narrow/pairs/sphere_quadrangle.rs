@@ -16,6 +16,10 @@ pub fn touch(a: &Placed<'_>, b: &Placed<'_>, out: &mut Touches) {
         Some(s) => (a.position, s.radius()),
         None => (a.ball.center, a.ball.radius),
     };
+    // An unbounded body has no sphere to be taken for.
+    if !radius.is_finite() {
+        return;
+    }
     let c = b.rotation.transpose_mul(center - b.position);
     let height = q.normal.dot(c - q.corners[0]);
     if !(height.abs() <= radius) {
