@@ -24,6 +24,14 @@ fn v(x: Real, y: Real, z: Real) -> Vec3 {
     Vec3::new(x, y, z)
 }
 
+fn sin(x: Real) -> Real {
+    mrtphys::math::sin_cos(x).0
+}
+
+fn cos(x: Real) -> Real {
+    mrtphys::math::sin_cos(x).1
+}
+
 fn seeded(cases: u32, seed: u64) -> ProptestConfig {
     ProptestConfig {
         cases,
@@ -332,7 +340,7 @@ fn star(points: usize) -> Vec<(Real, Real)> {
         .map(|i| {
             let a = std::f64::consts::PI * i as Real / points as Real;
             let r = if i % 2 == 0 { 2.0 } else { 0.8 };
-            (r * a.cos(), r * a.sin())
+            (r * cos(a), r * sin(a))
         })
         .collect()
 }
@@ -521,11 +529,11 @@ fn sizes_needles_and_many_corners() {
     let profile: Vec<(Real, Real)> = (0..240)
         .map(|i| {
             let a = i as Real * std::f64::consts::PI / 120.0;
-            (a.cos() * 1e-6, a.sin() * 1e-6)
+            (cos(a) * 1e-6, sin(a) * 1e-6)
         })
         .collect();
     let (points, faces) = prism(&profile, 1.0);
-    let area = 120.0 * (std::f64::consts::PI / 120.0).sin() * 1e-12;
+    let area = 120.0 * sin(std::f64::consts::PI / 120.0) * 1e-12;
     for rotation in [Mat3::IDENTITY, turn] {
         let p: Vec<Vec3> = points.iter().map(|&p| rotation * p).collect();
         for b in [Polyhedron::from_mesh(&p, &faces).unwrap(), Polyhedron::convex_hull(&p).unwrap()] {
@@ -540,7 +548,7 @@ fn sizes_needles_and_many_corners() {
     let lattice: Vec<Vec3> = (0..40_000)
         .map(|i| {
             let z = 1.0 - 2.0 * (i as Real + 0.5) / 40_000.0;
-            let (s, c) = (2.399963229728653 * i as Real).sin_cos();
+            let (s, c) = mrtphys::math::sin_cos(2.399963229728653 * i as Real);
             v((1.0 - z * z).sqrt() * c, (1.0 - z * z).sqrt() * s, z)
         })
         .collect();
@@ -598,7 +606,7 @@ proptest! {
         let n = radii.len();
         let profile: Vec<(Real, Real)> = radii.iter().enumerate().map(|(i, r)| {
             let a = std::f64::consts::TAU * i as Real / n as Real;
-            (r * a.cos(), r * a.sin())
+            (r * cos(a), r * sin(a))
         }).collect();
         let (points, faces) = prism(&profile, 0.7);
         let r = Quat::from_axis_angle(v(2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0), angle).to_matrix();
@@ -614,5 +622,60 @@ proptest! {
             prop_assert_eq!(&p.edges, &q.edges);
             prop_assert!(p.faces.iter().zip(&q.faces).all(|(f, g)| f.internal == g.internal && f.normal == g.normal));
         }
+    }
+}
+
+/// An octahedron, every triangle divided into n x n, pushed out to a sphere.
+fn globe(n: usize) -> (Vec<Vec3>, Vec<Vec<u32>>) {
+    let mut points: Vec<Vec3> = Vec::new();
+    let mut faces = Vec::new();
+    let mut number = |p: Vec3| {
+        points.iter().position(|&q| q == p).unwrap_or_else(|| {
+            points.push(p);
+            points.len() - 1
+        }) as u32
+    };
+    for octant in 0..8 {
+        let sign = |bit: usize| if octant >> bit & 1 == 1 { -1.0 } else { 1.0 };
+        let mut at = |i: usize, j: usize| {
+            number(v(sign(0) * i as Real, sign(1) * j as Real, sign(2) * (n - i - j) as Real) + Vec3::ZERO)
+        };
+        let mut add = |a: [u32; 3]| {
+            let odd = (octant as u32).count_ones() % 2 == 1;
+            faces.push(if odd { vec![a[0], a[2], a[1]] } else { a.to_vec() });
+        };
+        for i in 0..n {
+            for j in 0..n - i {
+                add([at(i, j), at(i + 1, j), at(i, j + 1)]);
+                if i + j + 1 < n {
+                    add([at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+                }
+            }
+        }
+    }
+    (points.iter().map(|p| p.try_normalize().unwrap()).collect(), faces)
+}
+
+/// Bumpy bodies: star-shaped, with reflex edges in all directions.
+#[test]
+fn bumpy_globes_in_pieces() {
+    let mut seed = 12345u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (seed >> 40) as Real / (1u64 << 24) as Real
+    };
+    for n in [1, 2, 2, 2, 3, 3, 4, 8, 24] {
+        let (mut points, faces) = globe(n);
+        for p in &mut points {
+            *p = *p * (0.6 + 0.8 * random());
+        }
+        let body = Polyhedron::from_mesh(&points, &faces);
+        if n == 24 {
+            assert!(matches!(body, Err(Error::LimitExceeded { what: "convex pieces", .. })), "{body:?}");
+            continue;
+        }
+        let body = body.unwrap();
+        println!("{} faces: {} pieces", faces.len(), body.pieces().len());
+        check(&body);
     }
 }

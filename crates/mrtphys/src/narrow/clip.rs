@@ -42,9 +42,11 @@ pub(crate) fn perimeter_centroid(points: &[Vec3]) -> Vec3 {
 }
 
 /// Puts the points in order round their convex hull seen against the unit normal `n` (counter-clockwise from its tip), and
-/// drops those inside (Andrew's monotone chain). The points should lie in a plane perpendicular to `n`.
-pub(crate) fn order_round(points: &mut Vec<Vec3>, n: Vec3, scratch: &mut Vec<(Real, Real, Vec3)>) {
-    if points.len() < 3 {
+/// drops those inside (Andrew's monotone chain). The points should lie in a plane perpendicular to `n`. Points within
+/// `tolerance` \[m\] of each other are one: between two that differ by rounding there is no direction, and the chain would
+/// follow it.
+pub(crate) fn order_round(points: &mut Vec<Vec3>, n: Vec3, tolerance: Real, scratch: &mut Vec<(Real, Real, Vec3)>) {
+    if points.len() < 2 {
         return;
     }
     let u = n.any_perpendicular();
@@ -52,6 +54,16 @@ pub(crate) fn order_round(points: &mut Vec<Vec3>, n: Vec3, scratch: &mut Vec<(Re
     scratch.clear();
     scratch.extend(points.iter().map(|&p| (u.dot(p), v.dot(p), p)));
     scratch.sort_unstable_by(|p, q| p.0.total_cmp(&q.0).then(p.1.total_cmp(&q.1)));
+    let mut kept = 0;
+    for i in 0..scratch.len() {
+        let p = scratch[i];
+        let before = scratch[..kept].iter().rev().take_while(|q| p.0 - q.0 <= tolerance);
+        if before.into_iter().all(|q| (p.1 - q.1).abs() > tolerance) {
+            scratch[kept] = p;
+            kept += 1;
+        }
+    }
+    scratch.truncate(kept);
     points.clear();
     let turns_left = |a: Vec3, b: Vec3, c: Vec3| {
         let (p, q) = (b - a, c - a);
@@ -70,7 +82,9 @@ pub(crate) fn order_round(points: &mut Vec<Vec3>, n: Vec3, scratch: &mut Vec<(Re
     for &(_, _, p) in scratch.iter().rev().skip(1) {
         add(points, start, p);
     }
-    points.pop();
+    if points.len() > 1 {
+        points.pop();
+    }
 }
 
 /// Drops corners that coincide with their neighbour and corners in the middle of an edge, within `tolerance` \[m\].
@@ -159,7 +173,7 @@ impl ClipScratch {
 
     /// Makes the area the convex hull of itself seen along `n`, without doubled corners.
     pub fn round_area(&mut self, n: Vec3, size: Real) {
-        order_round(&mut self.area, n, &mut self.flat);
+        order_round(&mut self.area, n, FLAT * size, &mut self.flat);
         clean(&mut self.area, FLAT * size);
     }
 
@@ -170,7 +184,7 @@ impl ClipScratch {
 
     /// Makes the frame the convex hull of itself seen along `n`, without doubled corners.
     pub fn round_frame(&mut self, n: Vec3, size: Real) {
-        order_round(&mut self.frame, n, &mut self.flat);
+        order_round(&mut self.frame, n, FLAT * size, &mut self.flat);
         clean(&mut self.frame, FLAT * size);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::clip::{ClipScratch, order_round, perimeter_centroid, project_cap};
 use super::pairs::sphere_polyhedron::Place;
-use super::sat::{Axis, AxisScratch, FLAT, Feature, Pair, Solid, Turned};
+use super::sat::{Axis, AxisScratch, FLAT, Feature, Pair, Solid, Turned, Whole};
 use super::{Placed, Touch, Touches};
 use crate::bounds::Ball;
 use crate::math::{Mat3, Real, Vec3, max};
@@ -73,6 +73,17 @@ impl<'a> Pieces<'a> {
         }
     }
 
+    fn solid<'s>(&self, i: usize, turned: &'s Turned, rotation: &'s Mat3) -> Solid<'s>
+    where
+        'a: 's,
+    {
+        let whole = match self {
+            Pieces::Of(pieces) if pieces.len() > 1 => Some(Whole { pieces, number: i, rotation }),
+            _ => None,
+        };
+        Solid { turned, topology: self.topology(i), whole }
+    }
+
     fn is_flat(&self) -> bool {
         matches!(self, Pieces::Flat(_))
     }
@@ -135,8 +146,8 @@ pub(crate) fn touch_pieces(a: (&Placed<'_>, Pieces<'_>), b: (&Placed<'_>, Pieces
             }
             let PairScratch { a: ta, b: tb, axes, clip, .. } = &mut out.scratch;
             let mut pair = Pair {
-                a: Solid { turned: ta, topology: a.topology(i) },
-                b: Solid { turned: tb, topology: b.topology(j) },
+                a: a.solid(i, ta, place_a.rotation),
+                b: b.solid(j, tb, place_b.rotation),
                 offset,
                 size,
                 coplanar: false,
@@ -230,6 +241,10 @@ fn between_caps(pair: &Pair<'_>, n: Vec3, (top_a, depth, level): (Real, Real, Re
     clip.round_frame(n, pair.size);
     project_cap(b, pair.offset, (n, top_a, level), tolerance, &mut clip.area);
     clip.round_area(n, pair.size);
+    if clip.area.len() > clip.frame.len() {
+        // A line clipped by a polygon, not the other way round.
+        std::mem::swap(&mut clip.area, &mut clip.frame);
+    }
     clip.clip_by_frame(n, pair.size);
     if clip.area.is_empty() {
         project_cap(a, Vec3::ZERO, (-n, -top_a, -level), tolerance, &mut clip.frame);
@@ -287,7 +302,7 @@ fn merge_equal(out: &mut Touches, first: usize, tolerance: Real) {
         }
         let mut merged = Touch { first_point: points.len() as u32, ..*t };
         if number > 1 {
-            order_round(area, t.normal, &mut scratch.order);
+            order_round(area, t.normal, tolerance, &mut scratch.order);
             super::clip::clean(area, tolerance);
             merged.point = perimeter_centroid(area);
             merged.point_count = area.len() as u32;

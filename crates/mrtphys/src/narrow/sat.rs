@@ -20,6 +20,10 @@ pub(crate) const TIE: Real = 1.0 / (1u64 << 30) as Real;
 /// for thousands of steps with the rounding of its rotation, far below any depth that a step of motion leads to.
 pub(crate) const FLAT: Real = 1.0 / (1u64 << 40) as Real;
 
+/// A gap along the normal of two edges below this part of the pair's size is rounding: 2^-46. The faces have said by then
+/// that the pieces are not apart; edges of two faces that touch must not contradict them by a last bit.
+const ROUNDING_OF_GAP: Real = 1.0 / (1u64 << 46) as Real;
+
 /// Square of the sine of the angle below which two edges are parallel: 2^-60. Leaving such a pair out changes the depth
 /// by no more than the width of the parallelogram they span, 2^-30 of its length.
 const PARALLEL: Real = 1.0 / (1u64 << 60) as Real;
@@ -84,14 +88,48 @@ pub(crate) struct Solid<'a> {
     pub turned: &'a Turned,
     /// corners of the faces, faces of the edges; its own coordinates are not read
     pub topology: &'a ConvexPiece,
+    /// what the piece is a piece of; `None` where it is the whole body
+    pub whole: Option<Whole<'a>>,
+}
+
+/// The body that a convex piece is a part of.
+#[derive(Clone, Copy)]
+pub(crate) struct Whole<'a> {
+    /// all pieces of the body
+    pub pieces: &'a [ConvexPiece],
+    /// which of them it is
+    pub number: usize,
+    /// rotation of the body
+    pub rotation: &'a Mat3,
+}
+
+impl Whole<'_> {
+    /// Whether a point on the surface of the piece is one where the surface of the whole body faces the direction: whether
+    /// no other piece that holds the point reaches further along it. On a cut through the body some other piece does. Both
+    /// in the body's own coordinates.
+    pub fn faces(&self, point: Vec3, direction: Vec3, tolerance: Real) -> bool {
+        let height = direction.dot(point) + tolerance;
+        self.pieces.iter().enumerate().all(|(i, p)| {
+            i == self.number || !holds(p, point, tolerance) || p.corners.iter().all(|c| direction.dot(*c) <= height)
+        })
+    }
+}
+
+/// Whether a piece holds a point, up to a tolerance \[m\].
+pub(crate) fn holds(piece: &ConvexPiece, point: Vec3, tolerance: Real) -> bool {
+    let reach = piece.ball.radius + tolerance;
+    (point - piece.ball.center).length_squared() <= reach * reach
+        && piece.faces.iter().all(|f| f.normal.dot(point) - f.offset <= tolerance)
 }
 
 impl Solid<'_> {
-    /// Whether an edge lies along a cut through its body. Such an edge separates like any other, but which directions are
-    /// outward there, the piece alone does not know.
-    fn edge_is_internal(&self, edge: usize) -> bool {
-        let [f, g] = self.topology.edges[edge].faces;
-        self.topology.faces[f as usize].internal || self.topology.faces[g as usize].internal
+    /// Whether the whole body faces the direction where the piece reaches furthest along it.
+    fn faces(&self, direction: Vec3, tolerance: Real) -> bool {
+        let Some(whole) = self.whole else { return true };
+        let own = whole.rotation.transpose_mul(direction);
+        let furthest = self.turned.high(direction) - tolerance;
+        let corners = self.turned.corners.iter().zip(&whole.pieces[whole.number].corners);
+        corners.filter(|(t, _)| direction.dot(**t) >= furthest).any(|(_, c)| whole.faces(*c, own, tolerance))
     }
 }
 
@@ -150,6 +188,17 @@ impl Pair<'_> {
     #[inline]
     pub fn gap(&self, n: Vec3) -> Real {
         n.dot(self.offset) + (self.b.turned.low(n) - self.a.turned.high(n))
+    }
+
+    /// Which of two tied features of one direction stands: faces before edges, and the rim of a quadrangle, which is no
+    /// face to lie on, last.
+    fn rank(&self, feature: Feature) -> u32 {
+        let is_rim = match feature {
+            Feature::FaceA(i) => self.a.topology.faces[i as usize].corners.len() < 3,
+            Feature::FaceB(i) => self.b.topology.faces[i as usize].corners.len() < 3,
+            _ => return 1,
+        };
+        if is_rim { 2 } else { 0 }
     }
 
     /// The axis of least overlap, or `None` where an axis separates the pieces; pieces that touch are not separated.
@@ -219,25 +268,23 @@ impl Search<'_, '_> {
             return true;
         }
         for i in skip..self.scratch.reach_a.len() {
-            let internal = self.pair.a.topology.faces[i].internal;
-            if self.worth(self.scratch.reach_a[i], internal) {
+            if self.worth(self.scratch.reach_a[i]) {
                 let gap = self.gap_a(i);
                 let normal = self.pair.a.turned.normals[i];
                 if gap > 0.0 {
                     return true;
                 }
-                self.keep(Axis { normal, gap, feature: Feature::FaceA(i as u32) }, internal);
+                self.keep(Axis { normal, gap, feature: Feature::FaceA(i as u32) });
             }
         }
         for i in skip..self.scratch.reach_b.len() {
-            let internal = self.pair.b.topology.faces[i].internal;
-            if self.worth(self.scratch.reach_b[i], internal) {
+            if self.worth(self.scratch.reach_b[i]) {
                 let gap = self.gap_b(i);
                 let normal = -self.pair.b.turned.normals[i];
                 if gap > 0.0 {
                     return true;
                 }
-                self.keep(Axis { normal, gap, feature: Feature::FaceB(i as u32) }, internal);
+                self.keep(Axis { normal, gap, feature: Feature::FaceB(i as u32) });
             }
         }
         false
@@ -245,18 +292,22 @@ impl Search<'_, '_> {
 
     /// Whether an axis whose gap is at most `reach` can separate or be the normal.
     #[inline]
-    fn worth(&self, reach: Real, internal: bool) -> bool {
-        reach >= 0.0 || if internal { self.best == Real::NEG_INFINITY } else { reach >= self.best - self.tie() }
+    fn worth(&self, reach: Real) -> bool {
+        reach >= 0.0 || reach >= self.best - self.tie()
     }
 
-    fn keep(&mut self, axis: Axis, internal: bool) {
-        if internal {
-            if self.spare.is_none_or(|s| axis.gap > s.gap) {
-                self.spare = Some(axis);
-            }
-        } else if axis.gap >= self.best - self.tie() {
+    /// Notes an axis. It can be the normal where both bodies face each other along it: a side of one against a cut through
+    /// the other may overlap less than anything else, but nothing can come out that way.
+    fn keep(&mut self, axis: Axis) {
+        if axis.gap < self.best - self.tie() {
+            return;
+        }
+        let tolerance = FLAT * self.pair.size;
+        if self.pair.a.faces(axis.normal, tolerance) && self.pair.b.faces(-axis.normal, tolerance) {
             self.best = crate::math::max(self.best, axis.gap);
             self.scratch.tied.push(axis);
+        } else if self.spare.is_none_or(|s| axis.gap > s.gap) {
+            self.spare = Some(axis);
         }
     }
 
@@ -267,7 +318,7 @@ impl Search<'_, '_> {
     fn edge_is_worth(&self, reach: &[Real], solid: &Solid<'_>, edge: usize) -> bool {
         let [f, g] = solid.topology.edges[edge].faces;
         let highest = crate::math::max(reach[f as usize], reach[g as usize]);
-        self.worth(highest, solid.edge_is_internal(edge))
+        self.worth(highest)
     }
 
     /// Tries all pairs of edges whose arcs on the Gauss map cross.
@@ -330,10 +381,9 @@ impl Search<'_, '_> {
         let n = across / if outward_a > 0.0 { length } else { -length };
         let p = a.turned.corners[a.topology.edges[i].ends[0] as usize];
         let q = b.turned.corners[b.topology.edges[j].ends[0] as usize];
-        let internal = a.edge_is_internal(i) || b.edge_is_internal(j);
         let near = n.dot(self.pair.offset) + (n.dot(q) - n.dot(p));
-        let rounding = FLAT * self.pair.size;
-        if near <= rounding && !internal && near < self.best - self.tie() {
+        let rounding = ROUNDING_OF_GAP * self.pair.size;
+        if near <= rounding && near < self.best - self.tie() {
             return false;
         }
         // Nearly parallel edges give a direction that is off by its rounding, and then the edges need not be what reaches
@@ -342,10 +392,7 @@ impl Search<'_, '_> {
         if gap > rounding {
             return true;
         }
-        self.keep(
-            Axis { normal: n, gap: crate::math::min(gap, 0.0), feature: Feature::Edges(i as u32, j as u32) },
-            internal,
-        );
+        self.keep(Axis { normal: n, gap: crate::math::min(gap, 0.0), feature: Feature::Edges(i as u32, j as u32) });
         false
     }
 
@@ -358,8 +405,10 @@ impl Search<'_, '_> {
         let distinct = &mut self.scratch.distinct;
         distinct.clear();
         for axis in self.scratch.tied.iter().filter(|t| t.gap >= limit) {
-            if distinct.iter().all(|d| d.normal.dot(axis.normal) < SAME_DIRECTION) {
-                distinct.push(*axis);
+            match distinct.iter_mut().find(|d| d.normal.dot(axis.normal) >= SAME_DIRECTION) {
+                None => distinct.push(*axis),
+                Some(d) if self.pair.rank(axis.feature) < self.pair.rank(d.feature) => *d = *axis,
+                Some(_) => {}
             }
         }
         match distinct.as_slice() {

@@ -7,15 +7,19 @@ use crate::math::{Real, Vec3};
 use robust::{Coord, Coord3D, orient2d};
 
 /// The first pair of triangles of a closed mesh that have more in common than the corners and edges they share: they
-/// cross, touch, or lie on each other. Boxes sorted along x are compared first; O(n^2) at worst.
+/// cross, touch, or lie on each other. Boxes sorted along the longest axis are compared first; O(n^2) at worst.
 pub(super) fn first_crossing(corners: &[Vec3], triangles: &[[u32; 3]]) -> Option<(usize, usize)> {
     let exact = exact_points(corners);
     let boxes: Vec<Aabb> = triangles.iter().map(|t| Aabb::of_points(t.iter().map(|&i| corners[i as usize]))).collect();
+    // along the longest axis, where fewest overlap
+    let whole = boxes.iter().fold(Aabb::EMPTY, |a, b| a.union(b));
+    let extent = whole.max - whole.min;
+    let axis = (1..3).fold(0, |a, k| if extent[k] > extent[a] { k } else { a });
     let mut order: Vec<usize> = (0..triangles.len()).collect();
-    order.sort_by(|&i, &j| boxes[i].min.x.total_cmp(&boxes[j].min.x).then(i.cmp(&j)));
+    order.sort_by(|&i, &j| boxes[i].min[axis].total_cmp(&boxes[j].min[axis]).then(i.cmp(&j)));
     let mut found: Option<(usize, usize)> = None;
     for (k, &i) in order.iter().enumerate() {
-        for &j in order[k + 1..].iter().take_while(|&&j| boxes[j].min.x <= boxes[i].max.x) {
+        for &j in order[k + 1..].iter().take_while(|&&j| boxes[j].min[axis] <= boxes[i].max[axis]) {
             let pair = (i.min(j), i.max(j));
             if boxes[i].meets(&boxes[j])
                 && found.is_none_or(|f| pair < f)

@@ -90,7 +90,7 @@ pub(super) fn convex_pieces(object: &str, surface: &Surface, volume: Real) -> Re
         cells.iter().filter_map(|c| Solid::of_corners(&c.corners(&surface.corners, tolerance), surface.size)).collect();
     let solids = merge(solids, surface.size, tolerance);
     let sum: Real = solids.iter().map(|s| s.volume).sum();
-    if !((sum - volume).abs() <= VOLUME * volume) {
+    if (sum - volume).abs() > VOLUME * volume {
         return Err(invalid(object, None, None, "features too fine to be divided into convex pieces"));
     }
     let skin: Vec<(Plane, Vec<Vec3>)> = patches

@@ -152,7 +152,7 @@ pub fn limit_box(min: Vec3, max: Vec3) -> Result<[(&'static str, Vec3, LimitQuad
         return Err(Error::NonFinite { object: object.into(), field: "corners" });
     }
     for axis in 0..3 {
-        if !(min[axis] < max[axis]) {
+        if min[axis] >= max[axis] {
             let field = ["x", "y", "z"][axis];
             let value = max[axis] - min[axis];
             return Err(Error::OutOfRange {

@@ -115,7 +115,7 @@ pub fn principal(tensor: &Mat3) -> Result<(Vec3, Quat)> {
             return refuse("not symmetric");
         }
     }
-    if !(largest > 0.0) {
+    if largest == 0.0 {
         return refuse("not positive definite");
     }
     let half = tensor.transpose();
@@ -125,7 +125,7 @@ pub fn principal(tensor: &Mat3) -> Result<(Vec3, Quat)> {
     let smallest = min(min(a, b), c);
     // A tensor that is not diagonal has moments only to the rounding of its largest entry.
     let noise = if axes == Quat::IDENTITY { 0.0 } else { 4.0 * Real::EPSILON * largest };
-    if !(smallest > noise) || !(1.0 / smallest).is_finite() {
+    if smallest <= noise || !(1.0 / smallest).is_finite() {
         return refuse("not positive definite");
     }
     let most = max(max(a, b), c);

@@ -1,5 +1,6 @@
 //! Polygons in a plane of space: area, planarity, simplicity, triangulation, cutting.
 
+use super::wide::{Wide, difference};
 use crate::math::{Real, Vec3, max, min};
 use robust::{Coord, orient2d};
 
@@ -7,6 +8,21 @@ use robust::{Coord, orient2d};
 pub(super) fn area_vector(polygon: &[Vec3]) -> Vec3 {
     let Some(&o) = polygon.first() else { return Vec3::ZERO };
     polygon.windows(2).map(|w| (w[0] - o).cross(w[1] - o)).sum::<Vec3>() * 0.5
+}
+
+/// The area vector in twice the precision: the normal of a face 10^8 times as long as wide, which lies askew, would be off
+/// by more than its width otherwise.
+pub(super) fn area_vector_wide(polygon: &[Vec3]) -> Vec3 {
+    let Some(&o) = polygon.first() else { return Vec3::ZERO };
+    let mut sum = [Wide::ZERO; 3];
+    for w in polygon.windows(2) {
+        let (a, b) = (difference(w[0], o), difference(w[1], o));
+        for (i, s) in sum.iter_mut().enumerate() {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            *s = *s + (a[j] * b[k] - a[k] * b[j]);
+        }
+    }
+    Vec3::new(sum[0].round(), sum[1].round(), sum[2].round()) * 0.5
 }
 
 /// Offset of the plane with this normal through a polygon: the middle of the range that its corners span, so that an
@@ -51,6 +67,15 @@ pub(super) fn in_triangle(p: Coord<Real>, [a, b, c]: [Coord<Real>; 3]) -> bool {
     orient2d(a, b, p) >= 0.0 && orient2d(b, c, p) >= 0.0 && orient2d(c, a, p) >= 0.0
 }
 
+/// Whether a polygon runs round once, turning left at all corners. O(k), exact: a polygon that always turns left runs
+/// round as often as it has leftmost corners.
+pub(super) fn is_convex_ring(p: &[Coord<Real>]) -> bool {
+    let n = p.len();
+    let before = |a: Coord<Real>, b: Coord<Real>| a.x < b.x || (a.x == b.x && a.y < b.y);
+    let leftmost = (0..n).filter(|&i| before(p[i], p[(i + 1) % n]) && before(p[i], p[(i + n - 1) % n])).count();
+    leftmost == 1 && is_strictly_convex(p)
+}
+
 /// Whether a polygon neither crosses nor touches itself. O(k^2), exact.
 pub(super) fn is_simple(p: &[Coord<Real>]) -> bool {
     let n = p.len();
@@ -76,9 +101,13 @@ pub(super) fn is_strictly_convex(p: &[Coord<Real>]) -> bool {
     (0..n).all(|i| orient2d(p[i], p[(i + 1) % n], p[(i + 2) % n]) > 0.0)
 }
 
+/// Distance, as part of the polygon's extent, that a diagonal keeps from the other corners where it can.
+const CLEARANCE: Real = 1e-9;
+
 /// Triangles of a simple counter-clockwise polygon, as corner numbers: a fan from the first corner where the polygon is
-/// strictly convex, else by clipping ears (G. Meisters, 1975), exact. `None` where no ear is left: the polygon was not
-/// simple.
+/// strictly convex, else by clipping ears (G. Meisters, 1975), exact. Diagonals keep clear of other corners if possible: on
+/// a face that is plane only to rounding, a diagonal through a corner would cut into the faces at that corner. `None` where
+/// no ear is left: the polygon was not simple.
 pub(super) fn triangulate(p: &[Coord<Real>]) -> Option<Vec<[u32; 3]>> {
     if p.len() < 3 {
         return None;
@@ -86,15 +115,13 @@ pub(super) fn triangulate(p: &[Coord<Real>]) -> Option<Vec<[u32; 3]>> {
     if is_strictly_convex(p) {
         return Some((1..p.len() as u32 - 1).map(|i| [0, i, i + 1]).collect());
     }
+    let margin = CLEARANCE * p.iter().fold(0.0, |m, c| max(m, max((c.x - p[0].x).abs(), (c.y - p[0].y).abs())));
     let mut left: Vec<u32> = (0..p.len() as u32).collect();
     let mut triangles = Vec::with_capacity(p.len() - 2);
     while left.len() > 3 {
         let n = left.len();
-        let at = |i: usize| p[left[i % n] as usize];
-        let ear = (0..n).find(|&i| {
-            let t = [at(i + n - 1), at(i), at(i + 1)];
-            orient2d(t[0], t[1], t[2]) > 0.0 && (2..n - 1).all(|k| !in_triangle(at(i + k), t))
-        })?;
+        let ear =
+            (0..n).find(|&i| is_ear(p, &left, i, margin)).or_else(|| (0..n).find(|&i| is_ear(p, &left, i, 0.0)))?;
         triangles.push([left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]]);
         left.remove(ear);
     }
@@ -104,6 +131,17 @@ pub(super) fn triangulate(p: &[Coord<Real>]) -> Option<Vec<[u32; 3]>> {
     }
     triangles.push([a, b, c]);
     Some(triangles)
+}
+
+/// Whether the corner and its neighbours form a triangle that no other corner is in, or within the margin of.
+fn is_ear(p: &[Coord<Real>], left: &[u32], corner: usize, margin: Real) -> bool {
+    let n = left.len();
+    let at = |i: usize| p[left[i % n] as usize];
+    let t = [at(corner + n - 1), at(corner), at(corner + 1)];
+    let length = |a: Coord<Real>, b: Coord<Real>| ((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y)).sqrt();
+    let reach: [Real; 3] = std::array::from_fn(|k| margin * length(t[k], t[(k + 1) % 3]));
+    let near = |q| (0..3).all(|k| orient2d(t[k], t[(k + 1) % 3], q) >= -reach[k]);
+    orient2d(t[0], t[1], t[2]) > max(reach[0], reach[1]) && (2..n - 1).all(|k| !near(at(corner + k)))
 }
 
 /// The parts of a convex polygon in front of and behind a plane; corners within the tolerance are on it. A part without
@@ -233,6 +271,9 @@ mod tests {
 
     #[test]
     fn polygons_that_cross_or_touch_themselves() {
+        let pentagram = coords(&[(0.0, 3.0), (-2.0, -3.0), (3.0, 1.0), (-3.0, 1.0), (2.0, -3.0)]);
+        assert!(is_strictly_convex(&pentagram) && !is_convex_ring(&pentagram) && !is_simple(&pentagram));
+        assert!(is_convex_ring(&coords(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])));
         assert!(!is_simple(&coords(&[(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)])));
         assert!(!is_simple(&coords(&[(0.0, 0.0), (2.0, 0.0), (1.0, 0.0), (1.0, 1.0)])));
         assert!(!is_simple(&coords(&[(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (1.0, 0.0), (0.0, 2.0)])));

@@ -182,11 +182,7 @@ impl Polyhedron {
         author_origin: Vec3,
         mass: MassProperties,
     ) -> Result<Polyhedron> {
-        if surface.corners.len() > MAX_CORNERS {
-            let (given, limit) = (surface.corners.len() as u64, MAX_CORNERS as u64);
-            return Err(Error::LimitExceeded { object: object.into(), what: "corners", given, limit });
-        }
-        if !(mass.volume > 0.0) || !mass.volume.is_finite() {
+        if mass.volume <= 0.0 || !mass.volume.is_finite() {
             let expected = "a volume that a number can hold";
             return Err(Error::OutOfRange { object: object.into(), field: "volume", value: mass.volume, expected });
         }

@@ -4,13 +4,15 @@
 //! holes stays the polygons that were given. Corners in the middle of an edge or of a face are dropped: what is left are
 //! the thesis's polyhedra (section A.14), whose edges are those between faces that are not coplanar.
 
-use super::polyhedron::{Edge, Face};
+use super::polyhedron::{Edge, Face, MAX_CORNERS};
 use super::{crossing, mass, planar};
 use crate::error::{Error, Result};
 use crate::math::{Real, Vec3, max};
 
 /// Most polygon corners of a surface in all.
 pub(super) const MAX_POLYGON_CORNERS: usize = 1 << 18;
+/// Most corners of a face that is not convex: ears are clipped in O(k^2) to O(k^3).
+pub(super) const MAX_RIM: usize = 1024;
 /// How far a corner may lie off the plane of its face, as part of the body's extent.
 pub(super) const PLANE_TOLERANCE: Real = 1e-9;
 /// Polygons this close to one plane, as part of the body's extent, are one face: a thousand times the rounding of a
@@ -58,6 +60,8 @@ struct Mesh<'a> {
     points: &'a [Vec3],
     faces: &'a [Vec<u32>],
     size: Real,
+    /// known to be a convex hull
+    convex: bool,
     normal: Vec<Vec3>,
     area: Vec<Real>,
     /// number of each face's first half-edge
@@ -90,14 +94,18 @@ impl Surface {
         if size == 0.0 {
             return Err(Error::Degenerate { object: object.into(), rank: 0 });
         }
-        let mut mesh = Mesh::new(object, points, faces, size)?;
-        mesh.find_planes(hull)?;
+        let mut mesh = Mesh::new(object, points, faces, size, hull)?;
+        mesh.find_planes()?;
         mesh.find_twins()?;
         if !hull {
             mesh.check_manifold()?;
         }
         let regions = Regions::of(&mesh);
         let surface = mesh.assemble(&regions)?;
+        if surface.corners.len() > MAX_CORNERS {
+            let (given, limit) = (surface.corners.len() as u64, MAX_CORNERS as u64);
+            return Err(Error::LimitExceeded { object: object.into(), what: "corners", given, limit });
+        }
         surface.check_solid(object, hull)?;
         Ok(surface)
     }
@@ -143,7 +151,10 @@ pub(super) fn polygon(points: &[Vec3], corners: &[u32]) -> Vec<Vec3> {
 }
 
 impl<'a> Mesh<'a> {
-    fn new(object: &'a str, points: &'a [Vec3], faces: &'a [Vec<u32>], size: Real) -> Result<Mesh<'a>> {
+    fn new(object: &'a str, points: &'a [Vec3], faces: &'a [Vec<u32>], size: Real, convex: bool) -> Result<Mesh<'a>> {
+        if faces.is_empty() {
+            return Err(invalid(object, None, None, "no faces"));
+        }
         let mut first = Vec::with_capacity(faces.len());
         let mut face_of = Vec::new();
         for (f, corners) in faces.iter().enumerate() {
@@ -162,7 +173,8 @@ impl<'a> Mesh<'a> {
             first.push(face_of.len() as u32);
             face_of.extend(std::iter::repeat_n(f as u32, corners.len()));
         }
-        let mesh = Mesh { object, points, faces, size, normal: vec![], area: vec![], first, face_of, twin: vec![] };
+        let mesh =
+            Mesh { object, points, faces, size, convex, normal: vec![], area: vec![], first, face_of, twin: vec![] };
         mesh.check_distinct()?;
         Ok(mesh)
     }
@@ -184,11 +196,11 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    fn find_planes(&mut self, hull: bool) -> Result<()> {
+    fn find_planes(&mut self) -> Result<()> {
         for (f, corners) in self.faces.iter().enumerate() {
             let refuse = |reason: String| Err(invalid(self.object, Some(f), None, reason));
             let p = polygon(self.points, corners);
-            let vector = planar::area_vector(&p);
+            let vector = planar::area_vector_wide(&p);
             let extent = super::extent(&p);
             // An area whose height is below the rounding of its coordinates is none.
             let Some(normal) =
@@ -203,8 +215,20 @@ impl<'a> Mesh<'a> {
                     "not plane: corners lie off it by up to {off:e} m; split the face into triangles"
                 ));
             }
-            if !hull && !planar::is_simple(&planar::project(&p, normal)) {
-                return refuse("the face's outline meets itself".into());
+            let flat = planar::project(&p, normal);
+            if !self.convex && !planar::is_convex_ring(&flat) {
+                if corners.len() > MAX_RIM {
+                    let (given, what) = (corners.len() as u64, "corners of a face that is not convex");
+                    return Err(Error::LimitExceeded {
+                        object: self.object.into(),
+                        what,
+                        given,
+                        limit: MAX_RIM as u64,
+                    });
+                }
+                if !planar::is_simple(&flat) {
+                    return refuse("the face's outline meets itself".into());
+                }
             }
             self.normal.push(normal);
             self.area.push(vector.length());
@@ -346,7 +370,7 @@ impl<'a> Mesh<'a> {
             let p = polygon(&corners, &rim);
             let flat =
                 || invalid(self.object, Some(region_face.seed as usize), None, "the face and its neighbours are flat");
-            let normal = planar::area_vector(&p).try_normalize().ok_or_else(flat)?;
+            let normal = planar::area_vector_wide(&p).try_normalize().ok_or_else(flat)?;
             let parts = planar::triangulate(&planar::project(&p, normal)).ok_or_else(flat)?;
             triangles.extend(parts.iter().map(|t| t.map(|i| rim[i as usize])));
             faces.push(Face { offset: planar::plane_offset(normal, &p), corners: rim, normal, internal: false });
@@ -483,5 +507,6 @@ fn single_rim(mesh: &Mesh<'_>, region: &[u32], members: &[u32]) -> Option<Vec<u3
     let mut sorted = rim.clone();
     sorted.sort_unstable();
     sorted.dedup();
-    (rim.len() == borders.len() && sorted.len() == rim.len()).then_some(rim)
+    let small = rim.len() <= MAX_RIM || members.len() == 1 || mesh.convex;
+    (small && rim.len() == borders.len() && sorted.len() == rim.len()).then_some(rim)
 }

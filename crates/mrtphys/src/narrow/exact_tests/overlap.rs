@@ -107,9 +107,9 @@ fn bodies_inside_bodies_leave_by_the_shortest_way() {
     let mut dice = Dice::new(2);
     for _ in 0..500 {
         let (a, b) = (any_body(&mut dice), any_body(&mut dice));
-        let tiny = hull(&b.corners.iter().map(|&c| c * 0.02).collect::<Vec<_>>());
+        let tiny = hull(&b.corners.iter().map(|&c| c * 0.01).collect::<Vec<_>>());
         let (ra, rb) = (dice.rotation(), dice.rotation());
-        let at = dice.vector(0.05);
+        let at = ra * (a.corners.iter().copied().sum::<Vec3>() / a.corners.len() as Real) + dice.vector(0.02);
         assert!(check(&placed(&a, Vec3::ZERO, &ra), &placed(&tiny, at, &rb)).is_some());
     }
 }

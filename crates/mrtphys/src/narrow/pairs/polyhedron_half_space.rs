@@ -53,7 +53,7 @@ pub(super) fn corners_against_wall(a: &Placed<'_>, corners: &[Vec3], wall: (Vec3
         a.position
     } else {
         if area.len() > 3 {
-            order_round(area, normal, &mut out.scratch.order);
+            order_round(area, normal, FLAT * a.ball.radius, &mut out.scratch.order);
             clean(area, FLAT * a.ball.radius);
         }
         a.position + perimeter_centroid(area)

@@ -2,7 +2,7 @@
 
 use super::sphere_sphere;
 use crate::math::{Real, Vec3};
-use crate::narrow::sat::{FLAT, TIE};
+use crate::narrow::sat::{FLAT, TIE, holds};
 use crate::narrow::{Placed, Touch, Touches};
 use crate::shape::polyhedron::{ConvexPiece, Face};
 use crate::shape::{Polyhedron, Sphere};
@@ -196,9 +196,8 @@ fn is_nearest_around(pieces: &[ConvexPiece], places: &[Place], k: usize, toleran
         if (other.point - place.point).max_abs() <= tolerance {
             return i > k;
         }
-        let holds = pieces[other.piece].faces.iter().all(|f| f.normal.dot(place.point) - f.offset <= tolerance);
         let nearer = other.distance < place.distance || (other.distance == place.distance && i < k);
-        !(holds && nearer)
+        !(nearer && holds(&pieces[other.piece], place.point, tolerance))
     })
 }
 
