@@ -679,3 +679,46 @@ fn bumpy_globes_in_pieces() {
         check(&body);
     }
 }
+
+#[test]
+fn regular_bodies_stay_regular_when_turned() {
+    let (cube, tetrahedron) = (Polyhedron::cuboid(Vec3::splat(1.0)).unwrap(), Polyhedron::tetrahedron(1.0).unwrap());
+    for i in 0..200 {
+        let axis = v(1.0, 0.3 * i as Real, 2.0 - 0.1 * i as Real).try_normalize().unwrap();
+        let r = Quat::from_axis_angle(axis, 0.37 * i as Real).to_matrix();
+        for body in [&cube, &tetrahedron] {
+            let turned: Vec<Vec3> = body.corners().iter().map(|&c| r * c).collect();
+            let turned = Polyhedron::convex_hull(&turned).unwrap();
+            let m = turned.mass_properties().unwrap();
+            assert!(m.moments_per_mass.x == m.moments_per_mass.y && m.moments_per_mass.y == m.moments_per_mass.z);
+            assert_eq!((m.axes, turned.faces().len()), (Quat::IDENTITY, body.faces().len()));
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(seeded(3000, 4))]
+
+    /// Whatever comes in: an error or a body that is sound, never a panic.
+    #[test]
+    fn nonsense_is_answered(
+        raw in prop::collection::vec((-2..3i32, -2..3i32, -2..3i32), 0..7),
+        faces in prop::collection::vec(prop::collection::vec(0..7u32, 0..5), 0..8),
+        stretch in prop_oneof![Just(1.0), Just(1e-9), Just(1e-14), Just(1e30)],
+    ) {
+        let points: Vec<Vec3> = raw.iter().map(|&(x, y, z)| v(x.into(), y.into(), Real::from(z) * stretch)).collect();
+        if let Ok(b) = Polyhedron::from_mesh(&points, &faces) {
+            check(&b);
+        }
+        if let Ok(b) = Polyhedron::convex_hull(&points) {
+            prop_assert!(b.is_convex() && b.volume() > 0.0 && b.corners().len() >= 4);
+        }
+        // a closed surface of triangles over the same points, most often crossing itself
+        let closed = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1], [5, 2, 1], [5, 3, 2], [5, 4, 3], [5, 1, 4]];
+        if let Ok(b) = Polyhedron::from_mesh(&points, &closed.map(|t| t.to_vec())) {
+            if stretch == 1.0 {
+                check(&b);
+            }
+        }
+    }
+}

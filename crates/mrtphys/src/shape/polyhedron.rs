@@ -285,7 +285,7 @@ fn box_surface(corners: Vec<Vec3>, size: Real) -> Result<Surface> {
         faces.push(Face { corners: rim.to_vec(), normal, offset, internal: false });
         triangles.extend([[rim[0], rim[1], rim[2]], [rim[0], rim[2], rim[3]]]);
     }
-    let edges = super::surface::edges_between(&faces, &[0, 1, 2, 3, 4, 5])
+    let edges = super::edges::edges_between(&faces, &[0, 1, 2, 3, 4, 5])
         .ok_or_else(|| super::surface::invalid("box", None, None, "not closed"))?;
     Ok(Surface { corners, faces, edges, triangles, reflex: vec![], size })
 }
