@@ -170,7 +170,7 @@ impl Solid {
         for face in &mut faces {
             face.corners = with_corners_between(&corners, &face.corners, tolerance);
         }
-        let edges = surface::edges_between(&faces, &group)?;
+        let edges = super::edges::edges_between(&faces, &group)?;
         Some(ConvexPiece { ball: enclosing::smallest_enclosing_sphere(&corners), corners, faces, edges })
     }
 }

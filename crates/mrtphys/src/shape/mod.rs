@@ -11,6 +11,7 @@ pub mod quadrangle;
 pub mod half_space;
 pub(crate) mod cell;
 pub(crate) mod crossing;
+pub(crate) mod edges;
 pub(crate) mod planar;
 pub(crate) mod surface;
 pub(crate) mod wide;

@@ -78,7 +78,7 @@ impl Polyhedron {
     /// face without area, not plane, or whose outline meets itself; an edge with one or more than two faces, or two faces
     /// of opposite sense; parts that touch in a point, several surfaces, a surface that meets itself or is inside out, no
     /// volume. [`Error::NonFinite`], [`Error::OutOfRange`], [`Error::TooFewPoints`] for the points;
-    /// [`Error::LimitExceeded`] above [`MAX_CORNERS`] and the limits of [`decompose`](super::decompose).
+    /// [`Error::LimitExceeded`] above [`MAX_CORNERS`] and the limits of [`decompose`].
     pub fn from_mesh(points: &[Vec3], faces: &[Vec<u32>]) -> Result<Polyhedron> {
         let surface = Surface::build("polyhedron", points, faces, Origin::Author)?;
         Polyhedron::of_surface("polyhedron", "polyhedron", surface)
@@ -285,7 +285,7 @@ fn box_surface(corners: Vec<Vec3>, size: Real) -> Result<Surface> {
         faces.push(Face { corners: rim.to_vec(), normal, offset, internal: false });
         triangles.extend([[rim[0], rim[1], rim[2]], [rim[0], rim[2], rim[3]]]);
     }
-    let edges = super::surface::edges_between(&faces, &[0, 1, 2, 3, 4, 5])
+    let edges = super::edges::edges_between(&faces, &[0, 1, 2, 3, 4, 5])
         .ok_or_else(|| super::surface::invalid("box", None, None, "not closed"))?;
     Ok(Surface { corners, faces, edges, triangles, reflex: vec![], size })
 }

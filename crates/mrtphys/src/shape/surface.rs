@@ -4,6 +4,7 @@
 //! holes stays the polygons that were given. Corners in the middle of an edge or of a face are dropped: what is left are
 //! the thesis's polyhedra (section A.14), whose edges are those between faces that are not coplanar.
 
+use super::edges::{edges_between, is_reflex};
 use super::polyhedron::{Edge, Face, MAX_CORNERS};
 use super::{crossing, mass, planar};
 use crate::error::{Error, Result};
@@ -384,35 +385,6 @@ impl<'a> Mesh<'a> {
         let reflex = edges.iter().filter(|e| is_reflex(&corners, &faces, e, size)).copied().collect();
         Ok(Surface { corners, faces, edges, triangles, reflex, size })
     }
-}
-
-/// Whether the inside has more than 180 degrees at an edge: the second face rises above the plane of the first.
-fn is_reflex(corners: &[Vec3], faces: &[Face], e: &Edge, size: Real) -> bool {
-    let [u, v] = e.ends.map(|c| corners[c as usize]);
-    let [f, g] = e.faces.map(|f| &faces[f as usize]);
-    // The first face runs from u to v, the second from v to u: its inside is to the left of that.
-    let Some(inward) = g.normal.cross(u - v).try_normalize() else { return false };
-    let width = g.corners.iter().fold(0.0, |m, &c| max(m, inward.dot(corners[c as usize] - u)));
-    inward.dot(f.normal) * width > PLANE_TOLERANCE * size
-}
-
-/// Edges between faces of different groups; `None` where a face's edge has no partner.
-pub(super) fn edges_between(faces: &[Face], group: &[u32]) -> Option<Vec<Edge>> {
-    let mut directed: Vec<([u32; 2], u32)> = Vec::new();
-    for (f, face) in faces.iter().enumerate() {
-        let n = face.corners.len();
-        directed.extend((0..n).map(|i| ([face.corners[i], face.corners[(i + 1) % n]], f as u32)));
-    }
-    directed.sort_unstable();
-    let mut edges = Vec::new();
-    for &([u, v], f) in &directed {
-        let twin = directed.binary_search_by(|e| e.0.cmp(&[v, u])).ok()?;
-        let g = directed[twin].1;
-        if u < v && group[f as usize] != group[g as usize] {
-            edges.push(Edge { ends: [u, v], faces: [f, g] });
-        }
-    }
-    Some(edges)
 }
 
 /// A polygon of the result: a whole region, or a given polygon of a region with holes.
