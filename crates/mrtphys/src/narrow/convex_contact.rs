@@ -1,8 +1,8 @@
 //! Contacts of bodies made of convex pieces: which pieces meet, along which normal, in which area.
 
-use super::clip::{ClipScratch, order_round, perimeter_centroid, project_cap};
+use super::clip::{ClipScratch, clean, order_round, perimeter_centroid, project_cap};
 use super::pairs::sphere_polyhedron::Place;
-use super::sat::{Axis, AxisScratch, FLAT, Feature, Pair, Solid, Turned, Whole};
+use super::sat::{Axis, AxisScratch, FLAT, Feature, Pair, Solid, TIE, Turned, Whole};
 use super::{Placed, Touch, Touches};
 use crate::bounds::Ball;
 use crate::math::{Mat3, Real, Vec3, max};
@@ -168,7 +168,7 @@ pub(crate) fn touch_pieces(a: (&Placed<'_>, Pieces<'_>), b: (&Placed<'_>, Pieces
     }
     if out.list.len() > first + 1 {
         let size = place_a.ball.radius + place_b.ball.radius;
-        merge_equal(out, first, FLAT * size);
+        merge_equal(out, first, TIE * size);
     }
 }
 
@@ -209,17 +209,20 @@ fn contact_area(pair: &Pair<'_>, axis: &Axis, depth: Real, clip: &mut ClipScratc
             return;
         }
         Feature::FaceA(f) if a.topology.faces[f as usize].corners.len() > 2 => {
-            let corners = &a.topology.faces[f as usize].corners;
-            clip.frame.clear();
-            clip.frame.extend(corners.iter().map(|&c| a.turned.corners[c as usize]));
+            a.rim(f as usize, &mut clip.frame);
+            if a.whole.is_some() {
+                clip.round_frame(n, pair.size);
+            }
             project_cap(&b, pair.offset, (n, top_a, level), tolerance, &mut clip.area);
             clip.round_area(n, pair.size);
             clip.clip_by_frame(n, pair.size);
         }
         Feature::FaceB(f) if b.topology.faces[f as usize].corners.len() > 2 => {
-            let corners = &b.topology.faces[f as usize].corners;
-            clip.frame.clear();
-            clip.frame.extend(corners.iter().map(|&c| b.turned.corners[c as usize] + pair.offset));
+            b.rim(f as usize, &mut clip.frame);
+            clip.frame.iter_mut().for_each(|c| *c += pair.offset);
+            if b.whole.is_some() {
+                clip.round_frame(-n, pair.size);
+            }
             project_cap(&a, Vec3::ZERO, (-n, depth - top_a, -level), tolerance, &mut clip.area);
             clip.round_area(n, pair.size);
             clip.clip_by_frame(-n, pair.size);
@@ -279,7 +282,7 @@ fn between_edges(pair: &Pair<'_>, i: usize, j: usize) -> Vec3 {
 /// common area is the convex hull of the areas: its point does not depend on how the bodies are cut into pieces.
 fn merge_equal(out: &mut Touches, first: usize, tolerance: Real) {
     let Touches { list, points, scratch } = out;
-    let same = |s: &Touch, t: &Touch| (s.normal - t.normal).max_abs() <= FLAT && (s.depth - t.depth).abs() <= tolerance;
+    let same = |s: &Touch, t: &Touch| (s.normal - t.normal).max_abs() <= TIE && (s.depth - t.depth).abs() <= tolerance;
     if !(first..list.len()).any(|i| (first..i).any(|k| same(&list[k], &list[i]))) {
         return;
     }
@@ -303,7 +306,7 @@ fn merge_equal(out: &mut Touches, first: usize, tolerance: Real) {
         let mut merged = Touch { first_point: points.len() as u32, ..*t };
         if number > 1 {
             order_round(area, t.normal, tolerance, &mut scratch.order);
-            super::clip::clean(area, tolerance);
+            clean(area, tolerance);
             merged.point = perimeter_centroid(area);
             merged.point_count = area.len() as u32;
         }

@@ -123,6 +123,23 @@ pub(crate) fn holds(piece: &ConvexPiece, point: Vec3, tolerance: Real) -> bool {
 }
 
 impl Solid<'_> {
+    /// The corners of a face, relative to the body's centre of mass, in order round it. A piece of a larger body may have
+    /// several faces in one plane, on the surface and on cuts; together they are what it turns to its partner there.
+    pub fn rim(&self, face: usize, out: &mut Vec<Vec3>) {
+        out.clear();
+        match self.whole {
+            None => {
+                let numbers = &self.topology.faces[face].corners;
+                out.extend(numbers.iter().map(|&c| self.turned.corners[c as usize]));
+            }
+            Some(whole) => {
+                let n = self.turned.normals[face];
+                let lowest = self.turned.high(n) - TIE * whole.pieces[whole.number].ball.radius;
+                out.extend(self.turned.corners.iter().copied().filter(|&c| n.dot(c) >= lowest));
+            }
+        }
+    }
+
     /// Whether the whole body faces the direction where the piece reaches furthest along it.
     fn faces(&self, direction: Vec3, tolerance: Real) -> bool {
         let Some(whole) = self.whole else { return true };
@@ -190,15 +207,15 @@ impl Pair<'_> {
         n.dot(self.offset) + (self.b.turned.low(n) - self.a.turned.high(n))
     }
 
-    /// Which of two tied features of one direction stands: faces before edges, and the rim of a quadrangle, which is no
-    /// face to lie on, last.
+    /// Which of two tied features of one direction stands: faces before edges; last the rim of a quadrangle,
+    /// which is no face to lie on, and a cut that lies in the plane of a face.
     fn rank(&self, feature: Feature) -> u32 {
-        let is_rim = match feature {
-            Feature::FaceA(i) => self.a.topology.faces[i as usize].corners.len() < 3,
-            Feature::FaceB(i) => self.b.topology.faces[i as usize].corners.len() < 3,
+        let face = match feature {
+            Feature::FaceA(i) => &self.a.topology.faces[i as usize],
+            Feature::FaceB(i) => &self.b.topology.faces[i as usize],
             _ => return 1,
         };
-        if is_rim { 2 } else { 0 }
+        if face.corners.len() < 3 || face.internal { 2 } else { 0 }
     }
 
     /// The axis of least overlap, or `None` where an axis separates the pieces; pieces that touch are not separated.
@@ -302,7 +319,8 @@ impl Search<'_, '_> {
         if axis.gap < self.best - self.tie() {
             return;
         }
-        let tolerance = FLAT * self.pair.size;
+        // The pieces of a body fit each other to the tolerance with which it was cut.
+        let tolerance = TIE * self.pair.size;
         if self.pair.a.faces(axis.normal, tolerance) && self.pair.b.faces(-axis.normal, tolerance) {
             self.best = crate::math::max(self.best, axis.gap);
             self.scratch.tied.push(axis);

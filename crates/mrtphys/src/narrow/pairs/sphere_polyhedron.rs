@@ -115,7 +115,7 @@ pub fn touch(a: &Placed<'_>, b: &Placed<'_>, out: &mut Touches) {
         }
     } else {
         for (k, place) in places.iter().enumerate() {
-            if is_nearest_around(pieces, &places, k, FLAT * size) {
+            if is_nearest_around(pieces, &places, k, TIE * size) {
                 report(place, radius - place.distance);
             }
         }
@@ -180,8 +180,15 @@ fn nearest_on_face(piece: &ConvexPiece, face: &Face, height: Real, c: Vec3) -> N
 }
 
 fn middle_of_faces(piece: &ConvexPiece, c: Vec3, tolerance: Real) -> Option<Vec3> {
-    let near = piece.faces.iter().filter(|f| !f.internal && (f.normal.dot(c) - f.offset).abs() <= tolerance);
-    near.map(|f| f.normal).sum::<Vec3>().try_normalize()
+    let near = |f: &&Face| !f.internal && (f.normal.dot(c) - f.offset).abs() <= tolerance;
+    let mut sum = Vec3::ZERO;
+    for (i, face) in piece.faces.iter().enumerate().filter(|(_, f)| near(f)) {
+        // Several faces in one plane count once.
+        if !piece.faces[..i].iter().any(|f| near(&f) && f.normal.dot(face.normal) >= 1.0 - TIE) {
+            sum += face.normal;
+        }
+    }
+    sum.try_normalize()
 }
 
 /// Whether no other piece comes nearer to the centre in the neighbourhood of a place, and no earlier place is the same. A
