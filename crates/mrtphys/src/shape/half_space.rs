@@ -260,8 +260,3 @@ mod tests {
         assert_eq!(LimitPlane::new(Vec3::X).unwrap().kind(), "plane");
     }
 }
-
-/// b
-pub fn boundary_bounds(_s: &dyn Shape, _p: Vec3) -> crate::bounds::BoundaryBounds {
-    unimplemented!()
-}
