@@ -14,7 +14,7 @@ fn seeded(cases: u32, seed: u64) -> ProptestConfig {
         cases,
         rng_seed,
         failure_persistence: None,
-        max_global_rejects: 20_000,
+        max_global_rejects: 200_000,
         ..ProptestConfig::default()
     }
 }
@@ -99,7 +99,7 @@ fn any_rotation() -> impl Strategy<Value = Mat3> {
 }
 
 proptest! {
-    #![proptest_config(seeded(300, 1))]
+    #![proptest_config(seeded(1000, 1))]
 
     /// A small box on the flat top of a body of many pieces: wherever it stands, one contact with the box's own face, the
     /// top's normal and no spin. Cuts below it must not show.

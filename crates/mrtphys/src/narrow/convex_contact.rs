@@ -121,6 +121,9 @@ fn turn_flat(q: &Quadrangle, rotation: &Mat3, out: &mut Turned) {
 pub(crate) fn touch_pieces(a: (&Placed<'_>, Pieces<'_>), b: (&Placed<'_>, Pieces<'_>), out: &mut Touches) {
     let ((place_a, a), (place_b, b)) = (a, b);
     let offset = place_b.position - place_a.position;
+    if !offset.is_finite() {
+        return;
+    }
     let first = out.list.len();
     let (count_a, count_b) = (a.count(), b.count());
     let mut turned_b = usize::MAX;
@@ -133,7 +136,7 @@ pub(crate) fn touch_pieces(a: (&Placed<'_>, Pieces<'_>), b: (&Placed<'_>, Pieces
             let size = ball_a.radius + ball_b.radius;
             let between = offset + *place_b.rotation * ball_b.center - center_a;
             let reach = size + FLAT * size;
-            if !(between.length_squared() <= reach * reach) {
+            if between.length_squared() > reach * reach {
                 continue;
             }
             if !turned_a {
