@@ -66,7 +66,7 @@ pub mod math;
 pub mod par;
 
 pub use def::*;
-pub use error::Error;
+pub use error::{Error, Result};
 pub use id::{BodyId, BoundaryId, FieldId};
 pub use math::{Mat3, Quat, Real, Vec3};
 pub use world::World;

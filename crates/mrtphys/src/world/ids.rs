@@ -45,6 +45,14 @@ impl IdTable {
         BodyId { index, generation: self.generation[index as usize], world }
     }
 
+    /// The body in slot `order[k]` goes to slot k, for every k.
+    pub fn permute(&mut self, order: &[u32]) {
+        self.index_of = order.iter().map(|&old| self.index_of[old as usize]).collect();
+        for (slot, &index) in self.index_of.iter().enumerate() {
+            self.slot_of[index as usize] = slot as u32;
+        }
+    }
+
     /// The body in `slot` goes, the one in the last slot takes its place.
     pub fn swap_remove(&mut self, slot: usize) {
         let index = self.index_of[slot] as usize;

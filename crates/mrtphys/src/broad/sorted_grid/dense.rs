@@ -29,6 +29,11 @@ impl Dense {
         self.slots.len()
     }
 
+    /// Slots in sorted order.
+    pub fn slots(&self) -> &[u32] {
+        &self.slots
+    }
+
     pub fn rebuild(&mut self, frame: Frame, members: Option<&[u32]>, balls: &[Ball]) {
         self.frame = frame;
         let [nx, ny, nz] = frame.count.map(|c| c as usize + 2);

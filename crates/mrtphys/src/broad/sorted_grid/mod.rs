@@ -80,6 +80,13 @@ impl BroadPhase for SortedGrid {
         walls::find(view, out);
     }
 
+    fn spatial_order(&self) -> &[u32] {
+        match &self.levels[..] {
+            [Level { members, index: Index::Dense(dense), .. }] if members.is_empty() => dense.slots(),
+            _ => &[],
+        }
+    }
+
     fn cells(&self) -> Vec<Cell> {
         let mut out = Vec::new();
         for (depth, level) in self.levels.iter().enumerate() {
@@ -98,6 +105,7 @@ impl SortedGrid {
         let Some(extent) = Extent::of(view.balls) else { return self.levels.clear() };
         if extent.smallest * LEVEL_RATIO >= extent.largest && extent.count == view.balls.len() {
             self.levels.resize_with(1, Level::default);
+            self.levels[0].members.clear();
             self.levels[0].largest = extent.largest;
             self.levels[0].index.rebuild(&extent, None, view.balls);
             return;
