@@ -2,6 +2,10 @@
 //! a pair routine would call a contact overlaps in bounds.
 
 use crate::math::{Mat3, Real, Vec3};
+use crate::model::Model;
+use crate::par;
+use crate::state::State;
+use crate::work::Work;
 
 /// A sphere; radius below zero: empty, meets nothing; infinite: meets everything that is not empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,6 +121,49 @@ impl BoundaryBounds {
             Some((normal, offset)) => normal.dot(body.center) - offset <= body.radius,
             None => false,
         }
+    }
+}
+
+/// Bounding spheres of all bodies, rotation matrices of those that are no spheres, boxes where the broad phase wants them.
+pub fn place(model: &Model, state: &State, work: &mut Work) {
+    let lines = &state.lines;
+    work.balls.resize(lines.len(), Ball::EMPTY);
+    if model.all_spheres {
+        work.rotations.clear();
+        par::for_each_block(&mut work.balls, |first, balls| {
+            for (ball, line) in balls.iter_mut().zip(&lines[first..]) {
+                *ball = Ball { center: line.x, radius: line.radius };
+            }
+        });
+    } else {
+        work.rotations.resize(lines.len(), Mat3::IDENTITY);
+        par::for_each_block2(&mut work.balls, &mut work.rotations, |first, balls, rotations| {
+            for (i, (ball, rotation)) in balls.iter_mut().zip(rotations).enumerate() {
+                place_one(model, state, first + i, ball, rotation);
+            }
+        });
+    }
+    let wants_boxes = work.broad.as_ref().is_some_and(|b| b.wants_boxes());
+    work.boxes.resize(if wants_boxes { lines.len() } else { 0 }, Aabb::EMPTY);
+    let rotations = &work.rotations;
+    par::for_each_block(&mut work.boxes, |first, boxes| {
+        for (i, bounding_box) in boxes.iter_mut().enumerate() {
+            let slot = first + i;
+            let rotation = rotations.get(slot).unwrap_or(&Mat3::IDENTITY);
+            *bounding_box = model.body(slot).shape.bounding_box(lines[slot].x, rotation);
+        }
+    });
+}
+
+fn place_one(model: &Model, state: &State, slot: usize, ball: &mut Ball, rotation: &mut Mat3) {
+    let (body, line) = (model.body(slot), &state.lines[slot]);
+    if line.radius < 0.0 {
+        *ball = Ball::EMPTY;
+    } else if body.is_plain_sphere() {
+        *ball = Ball { center: line.x, radius: line.radius };
+    } else {
+        *rotation = state.spins[slot].q.to_matrix();
+        *ball = placed_ball(&body.ball, line.x, rotation);
     }
 }
 

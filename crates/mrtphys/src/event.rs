@@ -32,3 +32,22 @@ pub struct ImpactEvent {
     /// change of the pair's kinetic energy by this impact, j . (v_before + v_after) / 2 summed over the pair \[J\]
     pub energy_change: Real,
 }
+
+/// An impact inside a step: parties by slot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepEvent {
+    /// slot of the first body
+    pub a: u32,
+    /// the other party
+    pub b: crate::contact::Other,
+    /// contact point \[m\]
+    pub point: Vec3,
+    /// unit normal from a to b
+    pub normal: Vec3,
+    /// normal impulse \[Ns\]
+    pub impulse_n: Real,
+    /// tangential impulse \[Ns\]
+    pub impulse_t: Real,
+    /// change of the pair's kinetic energy \[J\]
+    pub energy_change: Real,
+}

@@ -136,8 +136,6 @@ pub struct Boundary {
     pub position: Vec3,
     /// surface
     pub surface: Surface,
-    /// bounds
-    pub bounds: BoundaryBounds,
 }
 
 /// What a step only reads.
@@ -157,6 +155,8 @@ pub struct Model {
     pub fixed: Vec<bool>,
     /// boundaries
     pub boundaries: Vec<Boundary>,
+    /// their bounds
+    pub wall_bounds: Vec<BoundaryBounds>,
     /// force fields
     pub forces: Vec<PlacedForce>,
     /// flow fields
@@ -168,6 +168,13 @@ pub struct Model {
 }
 
 impl Model {
+    /// Slots in order of creation: the order in which everything is summed, saved and reported.
+    pub fn order(&self) -> Vec<u32> {
+        let mut order: Vec<u32> = (0..self.serial.len() as u32).collect();
+        order.sort_unstable_by_key(|&slot| self.serial[slot as usize]);
+        order
+    }
+
     /// The type of the body in a slot.
     #[inline]
     pub fn body(&self, slot: usize) -> &BodyType {

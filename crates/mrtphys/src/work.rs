@@ -3,8 +3,9 @@
 use crate::bounds::{Aabb, Ball};
 use crate::broad::{BroadPhase, Candidates};
 use crate::contact::ContactList;
+use crate::contact::collect::Block;
 use crate::counters::Counters;
-use crate::event::ImpactEvent;
+use crate::event::StepEvent;
 use crate::math::{Mat3, Vec3};
 use std::time::Duration;
 
@@ -23,10 +24,14 @@ pub struct Work {
     pub broad: Option<Box<dyn BroadPhase>>,
     /// candidate pairs
     pub candidates: Candidates,
+    /// where blocks of candidates write their contacts
+    pub blocks: Vec<Block>,
     /// contacts of the step
     pub contacts: ContactList,
     /// impacts of the step, where they are recorded
-    pub events: Vec<ImpactEvent>,
+    pub events: Vec<StepEvent>,
+    /// how far each body was pushed out of overlaps in this step \[m\]; empty until the first push
+    pub shifts: Vec<Vec3>,
     /// counts of the last step
     pub counters: Counters,
     /// time spent in each stage of the last step

@@ -1,1 +1,197 @@
-//! From candidates to contacts.
+//! Stages 3 to 5: from bounds to candidates, from candidates to contacts, and into the order of response.
+
+use super::let_back::LetBack;
+use super::{Contact, Other};
+use crate::bounds::Ball;
+use crate::broad::BoundsView;
+use crate::def::ContactMode;
+use crate::math::{Mat3, Vec3};
+use crate::model::Model;
+use crate::narrow::{Placed, Touches};
+use crate::par;
+use crate::state::State;
+use crate::work::Work;
+
+/// Candidates in a block of the narrow phase.
+const BLOCK: usize = 512;
+
+/// Contacts of one block of candidates.
+#[derive(Clone, Debug, Default)]
+pub struct Block {
+    contacts: Vec<Contact>,
+    touches: Touches,
+}
+
+/// Asks the broad phase.
+pub fn find_candidates(model: &Model, work: &mut Work) {
+    let view = BoundsView {
+        balls: &work.balls,
+        boxes: &work.boxes,
+        fixed: &model.fixed,
+        boundaries: &model.wall_bounds,
+        epoch: model.epoch,
+    };
+    work.candidates.clear();
+    if let Some(broad) = &mut work.broad {
+        broad.find(&view, &mut work.candidates);
+    }
+    work.counters.sphere_tests += work.candidates.sphere_tests;
+    work.counters.detect_calls += (work.candidates.pairs.len() + work.candidates.walls.len()) as u64;
+}
+
+/// Asks the pair routines and sorts their contacts into the order of response.
+pub fn collect(model: &Model, state: &State, let_back: &mut LetBack, work: &mut Work) {
+    settle_planes(model, state, let_back);
+    let scene = Scene {
+        model,
+        state,
+        let_back,
+        balls: &work.balls,
+        rotations: &work.rotations,
+        thesis_order: model.settings.contact == ContactMode::Thesis,
+    };
+    let contacts = &mut work.contacts;
+    contacts.list.clear();
+    contacts.points.clear();
+    let mut take = |blocks: &mut [Block]| {
+        for block in blocks {
+            let shift = contacts.points.len() as u32;
+            contacts.points.append(&mut block.touches.points);
+            contacts.list.extend(block.contacts.iter().map(|c| Contact { first_point: c.first_point + shift, ..*c }));
+        }
+    };
+    let n = par::blocks_into(&work.candidates.pairs, BLOCK, &mut work.blocks, |pairs, block| {
+        block.clear();
+        pairs.iter().for_each(|&[i, j]| scene.touch_pair(i, j, block));
+    });
+    take(&mut work.blocks[..n]);
+    let n = par::blocks_into(&work.candidates.walls, BLOCK, &mut work.blocks, |walls, block| {
+        block.clear();
+        walls.iter().for_each(|&[body, wall]| scene.touch_wall(body, wall, block));
+    });
+    take(&mut work.blocks[..n]);
+    // Stable: contacts of one pair keep the order in which their routine reported them.
+    contacts.list.sort_by_key(|c| c.key);
+    work.counters.contacts += contacts.list.len() as u64;
+}
+
+/// Two-sided planes must know on which side each body is at home.
+fn settle_planes(model: &Model, state: &State, let_back: &mut LetBack) {
+    for (index, boundary) in model.boundaries.iter().enumerate() {
+        if let Some(plane) = boundary.shape.downcast::<crate::shape::LimitPlane>() {
+            let bodies = model.serial.iter().zip(&state.lines).enumerate();
+            for (slot, (&serial, line)) in bodies {
+                if line.radius >= 0.0 && !model.fixed[slot] {
+                    let reach = line.radius;
+                    let_back.settle(
+                        index as u32,
+                        serial,
+                        plane.normal().dot(line.x - boundary.position),
+                        reach,
+                        plane.normal().dot(line.v),
+                    );
+                }
+            }
+        }
+    }
+}
+
+impl Block {
+    fn clear(&mut self) {
+        self.contacts.clear();
+        self.touches.clear();
+    }
+}
+
+/// What the narrow phase reads.
+struct Scene<'a> {
+    model: &'a Model,
+    state: &'a State,
+    let_back: &'a LetBack,
+    balls: &'a [Ball],
+    rotations: &'a [Mat3],
+    thesis_order: bool,
+}
+
+impl Scene<'_> {
+    fn placed(&self, slot: u32) -> Placed<'_> {
+        let i = slot as usize;
+        Placed {
+            shape: &*self.model.body(i).shape,
+            position: self.state.lines[i].x,
+            rotation: self.rotations.get(i).unwrap_or(&Mat3::IDENTITY),
+            ball: self.balls[i],
+            home_side: 0.0,
+        }
+    }
+
+    /// Contacts of two bodies; the first is the one created earlier.
+    fn touch_pair(&self, i: u32, j: u32, block: &mut Block) {
+        let (si, sj) = (self.model.serial[i as usize], self.model.serial[j as usize]);
+        let ((a, low), (b, high)) = if si < sj { ((i, si), (j, sj)) } else { ((j, sj), (i, si)) };
+        let entry = self.model.table.lookup(self.model.body(a as usize).kind, self.model.body(b as usize).kind);
+        let (first, second) = (self.placed(a), self.placed(b));
+        let start = block.touches.list.len();
+        if entry.swapped {
+            (entry.routine)(&second, &first, &mut block.touches);
+            block.touches.flip_from(start);
+        } else {
+            (entry.routine)(&first, &second, &mut block.touches);
+        }
+        let key = if self.thesis_order {
+            (u64::from(low) << 32) | (1 << 31) | u64::from(high)
+        } else {
+            (u64::from(low) << 32) | u64::from(high)
+        };
+        self.emit(key, a, Other::Body(b), start, block);
+    }
+
+    /// Contacts of a body and a boundary.
+    fn touch_wall(&self, body: u32, wall: u32, block: &mut Block) {
+        let boundary = &self.model.boundaries[wall as usize];
+        let serial = self.model.serial[body as usize];
+        let entry = self.model.table.lookup(self.model.body(body as usize).kind, boundary.kind);
+        let first = self.placed(body);
+        let second = Placed {
+            shape: &*boundary.shape,
+            position: boundary.position,
+            rotation: &Mat3::IDENTITY,
+            ball: self.model.wall_bounds[wall as usize].ball,
+            home_side: self.let_back.home_side(wall, serial).unwrap_or(0.0),
+        };
+        let start = block.touches.list.len();
+        if entry.swapped {
+            (entry.routine)(&second, &first, &mut block.touches);
+            block.touches.flip_from(start);
+        } else {
+            (entry.routine)(&first, &second, &mut block.touches);
+        }
+        let key = (u64::from(serial) << 32) | u64::from(wall) | if self.thesis_order { 0 } else { 1 << 63 };
+        self.emit(key, body, Other::Wall(wall), start, block);
+    }
+
+    fn emit(&self, key: u64, a: u32, b: Other, start: usize, block: &mut Block) {
+        for t in &block.touches.list[start..] {
+            debug_assert!(t.normal.is_finite() && t.point.is_finite() && t.depth >= 0.0, "{t:?}");
+            block.contacts.push(Contact {
+                key,
+                a,
+                b,
+                feature: t.feature,
+                normal: t.normal,
+                point: t.point,
+                depth: t.depth,
+                first_point: t.first_point,
+                point_count: t.point_count,
+            });
+        }
+    }
+}
+
+/// Points of a contact: those of its manifold, or the contact point alone.
+pub fn manifold<'a>(contact: &'a Contact, points: &'a [Vec3]) -> &'a [Vec3] {
+    if contact.point_count == 0 {
+        return std::slice::from_ref(&contact.point);
+    }
+    &points[contact.first_point as usize..][..contact.point_count as usize]
+}

@@ -54,6 +54,17 @@ pub struct Scope {
     pub without_reaction: bool,
 }
 
+/// A scope as slots: the world makes it anew whenever bodies come, go or change their slots.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Reach {
+    /// slot of the carrier
+    pub carrier: Option<u32>,
+    /// by slot, whether the field acts there; `None`: everywhere
+    pub only: Option<Vec<bool>>,
+    /// the carrier is gone, and the field with it
+    pub gone: bool,
+}
+
 /// A force field in its place.
 #[derive(Clone, Debug)]
 pub struct PlacedForce {
@@ -61,6 +72,8 @@ pub struct PlacedForce {
     pub field: Arc<dyn ForceField>,
     /// what it acts on
     pub scope: Scope,
+    /// the same, as slots
+    pub reach: Reach,
 }
 
 /// A flow field in its place.
@@ -70,4 +83,6 @@ pub struct PlacedFlow {
     pub field: Arc<dyn FlowField>,
     /// what it acts on
     pub scope: Scope,
+    /// the same, as slots
+    pub reach: Reach,
 }

@@ -7,6 +7,8 @@ pub mod rough;
 pub mod coulomb;
 pub mod sequential;
 pub mod reflection;
+pub mod answer;
+pub(crate) mod groups;
 
 use crate::def::FrictionLaw;
 use crate::math::{Mat3, Real, Vec3};

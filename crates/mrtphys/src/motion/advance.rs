@@ -13,5 +13,6 @@ pub fn advance(
     _dt: Real,
     _ledger: &mut Ledger,
     _counters: &mut Counters,
-) {
+) -> crate::error::Result<()> {
+    Ok(())
 }

@@ -1,1 +1,56 @@
-//! Parallel loops whose results do not depend on the number of threads.
+//! Parallel loops whose results do not depend on the number of threads: work is cut into blocks whose size depends on the
+//! scene alone, each block writes its own output, and outputs are put together in the order of the blocks.
+
+use rayon::prelude::*;
+
+/// Items in a block of a streaming loop. One block or less runs on the calling thread, without any hand-over.
+pub const BLOCK: usize = 4096;
+
+/// Runs `f(index of the block's first item, block)` over blocks of `items`.
+pub fn for_each_block<T: Send>(items: &mut [T], f: impl Fn(usize, &mut [T]) + Sync) {
+    if items.len() <= BLOCK {
+        return f(0, items);
+    }
+    items.par_chunks_mut(BLOCK).enumerate().for_each(|(i, block)| f(i * BLOCK, block));
+}
+
+/// Runs `f` over blocks of two slices of equal length.
+pub fn for_each_block2<A: Send, B: Send>(a: &mut [A], b: &mut [B], f: impl Fn(usize, &mut [A], &mut [B]) + Sync) {
+    debug_assert_eq!(a.len(), b.len());
+    if a.len() <= BLOCK {
+        return f(0, a, b);
+    }
+    let blocks = a.par_chunks_mut(BLOCK).zip(b.par_chunks_mut(BLOCK)).enumerate();
+    blocks.for_each(|(i, (a, b))| f(i * BLOCK, a, b));
+}
+
+/// Runs `f(block of items, output)` with one output per block of `size` items; `outputs` grows to the number of blocks and
+/// keeps its memory. Returns the number of blocks.
+pub fn blocks_into<T: Sync, O: Default + Send>(
+    items: &[T],
+    size: usize,
+    outputs: &mut Vec<O>,
+    f: impl Fn(&[T], &mut O) + Sync,
+) -> usize {
+    let count = items.len().div_ceil(size);
+    if outputs.len() < count {
+        outputs.resize_with(count, O::default);
+    }
+    if count == 1 {
+        f(items, &mut outputs[0]);
+    } else {
+        outputs[..count].par_iter_mut().zip(items.par_chunks(size)).for_each(|(out, block)| f(block, out));
+    }
+    count
+}
+
+/// Sum of `f` over all indices, in fixed blocks in a fixed order.
+pub fn sum_blocks(count: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {
+    let block = |b: usize| (b * BLOCK..((b + 1) * BLOCK).min(count)).map(&f).sum::<f64>();
+    let blocks = count.div_ceil(BLOCK);
+    if blocks <= 1 {
+        return block(0);
+    }
+    let parts: Vec<f64> = (0..blocks).into_par_iter().map(block).collect();
+    parts.into_iter().sum()
+}

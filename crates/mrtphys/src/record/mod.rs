@@ -1,1 +1,4 @@
-//! Snapshots.
+//! Digests and snapshots of the state.
+
+pub mod digest;
+pub mod snapshot;

@@ -49,3 +49,8 @@ limit!(LimitQuadrangle, "limit-quadrangle");
 pub fn limit_box(_min: Vec3, _max: Vec3) -> crate::error::Result<[(&'static str, Vec3, LimitQuadrangle); 6]> {
     unimplemented!()
 }
+
+/// b
+pub fn boundary_bounds(_s: &dyn Shape, _p: Vec3) -> crate::bounds::BoundaryBounds {
+    unimplemented!()
+}

@@ -12,3 +12,8 @@ pub struct MassProperties {
     /// rotation from the principal axes into the shape's axes
     pub axes: Quat,
 }
+
+/// p
+pub fn principal(_t: &crate::math::Mat3) -> crate::error::Result<(Vec3, Quat)> {
+    unimplemented!()
+}

@@ -1,0 +1,235 @@
+//! Stage 6 as a whole: the contacts of the step, in their order, each with the law that belongs to its pair.
+
+use super::{Encounter, Party};
+use crate::contact::{Contact, Other};
+use crate::def::ImpactMode;
+use crate::event::StepEvent;
+use crate::ledger::Ledger;
+use crate::math::{Real, Vec3};
+use crate::model::{BodyType, Model};
+use crate::state::State;
+use crate::step::Recipe;
+use crate::work::Work;
+
+/// A contact is at rest, not an impact, where it approaches no faster than the fields alone can have made it within this
+/// many steps: an inelastic pair then stays together instead of bouncing ever lower.
+const RESTING_STEPS: Real = 2.0;
+
+/// Answers the contacts of the step.
+pub(crate) fn answer(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, ledger: &mut Ledger) {
+    work.events.clear();
+    match recipe.model.settings.impact {
+        ImpactMode::Sequential => answer_in_order(recipe, state, work, ledger),
+        ImpactMode::Reflection => super::groups::answer_in_groups(recipe, state, work, ledger),
+    }
+}
+
+/// One contact after the other; whether it approaches is asked when its turn comes.
+fn answer_in_order(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, ledger: &mut Ledger) {
+    let contacts = std::mem::take(&mut work.contacts);
+    let mut pairs = PairSurfaces::new(recipe.model);
+    for contact in &contacts.list {
+        answer_one(recipe, state, work, ledger, contact, &mut pairs);
+    }
+    work.contacts = contacts;
+}
+
+/// Answers one contact with the law of its pair.
+pub(super) fn answer_one(
+    recipe: &Recipe<'_>,
+    state: &mut State,
+    work: &mut Work,
+    ledger: &mut Ledger,
+    contact: &Contact,
+    pairs: &mut PairSurfaces<'_>,
+) {
+    let surface = pairs.of(contact);
+    if surface.smooth_spheres && !recipe.record_events {
+        if surface.restitution == 1.0 {
+            if bounce_smooth(state, contact) {
+                count(work, contact);
+            }
+            return;
+        }
+    }
+    let Some(encounter) = encounter(recipe, state, &work.accelerations, contact, surface) else { return };
+    let Some(response) = super::sequential::respond(&encounter, recipe.law) else { return };
+    push(state, contact, response.impulse_on_a);
+    count(work, contact);
+    work.counters.fallbacks += u64::from(response.fallback);
+    ledger.friction += response.friction_change;
+    ledger.restitution += response.restitution_change;
+    if recipe.record_events {
+        work.events.push(StepEvent {
+            a: contact.a,
+            b: contact.b,
+            point: contact.point,
+            normal: contact.normal,
+            impulse_n: response.impulse_n,
+            impulse_t: response.impulse_t,
+            energy_change: response.energy_change,
+        });
+    }
+}
+
+/// Counts an impact.
+pub(super) fn count(work: &mut Work, contact: &Contact) {
+    work.counters.impacts += 1;
+    work.counters.wall_impacts += u64::from(matches!(contact.b, Other::Wall(_)));
+}
+
+/// Elastic impact of two spheres, or of a sphere and what never moves, without friction: the impulse goes through both
+/// centres, so only velocities change. dp1 = -2 (v12 . n) / (1/m1 + 1/m2) n, equations (54), (55).
+fn bounce_smooth(state: &mut State, contact: &Contact) -> bool {
+    let n = contact.normal;
+    let a = &state.lines[contact.a as usize];
+    let (v_b, w_b) = match contact.b {
+        Other::Body(slot) => (state.lines[slot as usize].v, state.lines[slot as usize].inverse_mass),
+        Other::Wall(_) => (Vec3::ZERO, 0.0),
+    };
+    let approach = (a.v - v_b).dot(n);
+    let weight = a.inverse_mass + w_b;
+    if !(approach > 0.0) || weight == 0.0 {
+        return false;
+    }
+    let j = -2.0 * approach / weight;
+    let (va, vb) = (a.v + n * (j * a.inverse_mass), v_b - n * (j * w_b));
+    if !(va.is_finite() && vb.is_finite()) {
+        return false;
+    }
+    state.lines[contact.a as usize].v = va;
+    if let Other::Body(slot) = contact.b {
+        state.lines[slot as usize].v = vb;
+    }
+    true
+}
+
+/// Gives a the impulse and b the opposite, both at the contact point.
+pub(super) fn push(state: &mut State, contact: &Contact, impulse: Vec3) {
+    push_body(state, contact.a, contact.point, impulse);
+    if let Other::Body(b) = contact.b {
+        push_body(state, b, contact.point, -impulse);
+    }
+}
+
+fn push_body(state: &mut State, slot: u32, point: Vec3, impulse: Vec3) {
+    let line = &mut state.lines[slot as usize];
+    if line.inverse_mass > 0.0 {
+        line.v += impulse * line.inverse_mass;
+        state.spins[slot as usize].l += (point - line.x).cross(impulse);
+    }
+}
+
+/// What the law is told of a contact; `None` where nothing can respond.
+pub(super) fn encounter(
+    recipe: &Recipe<'_>,
+    state: &State,
+    accelerations: &[Vec3],
+    contact: &Contact,
+    surface: PairSurface,
+) -> Option<Encounter> {
+    let a = party(recipe.model, state, contact.a, contact.point);
+    let b = match contact.b {
+        Other::Body(slot) => party(recipe.model, state, slot, contact.point),
+        Other::Wall(_) => Party::IMMOVABLE,
+    };
+    let mut encounter = Encounter {
+        a,
+        b,
+        normal: contact.normal,
+        friction: surface.friction,
+        restitution: surface.restitution,
+        persistent: recipe.law.needs_contact_memory() && state.contacts.holds(contact.key),
+    };
+    let approach = encounter.approach();
+    if !(approach > 0.0) {
+        return None;
+    }
+    if surface.restitution < 1.0 && is_resting(recipe.dt, accelerations, contact, approach) {
+        encounter.restitution = 0.0;
+    }
+    Some(encounter)
+}
+
+fn is_resting(dt: Real, accelerations: &[Vec3], contact: &Contact, approach: Real) -> bool {
+    let of = |slot: u32| accelerations.get(slot as usize).copied().unwrap_or(Vec3::ZERO);
+    let b = match contact.b {
+        Other::Body(slot) => of(slot),
+        Other::Wall(_) => Vec3::ZERO,
+    };
+    approach <= RESTING_STEPS * (of(contact.a) - b).dot(contact.normal) * dt
+}
+
+fn party(model: &Model, state: &State, slot: u32, point: Vec3) -> Party {
+    let i = slot as usize;
+    let (body, line, spin) = (model.body(i), &state.lines[i], &state.spins[i]);
+    if line.inverse_mass == 0.0 {
+        return Party::IMMOVABLE;
+    }
+    Party {
+        mass: body.mass,
+        inverse_mass: line.inverse_mass,
+        inverse_inertia: body.inertia.inverse_world(spin.q),
+        v: line.v,
+        w: body.inertia.angular_velocity(spin.q, spin.l),
+        r: point - line.x,
+    }
+}
+
+/// Surface values of a pair.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PairSurface {
+    pub friction: Real,
+    pub restitution: Real,
+    /// spheres without friction: no torque can act
+    pub smooth_spheres: bool,
+}
+
+/// Surface values of pairs of types; consecutive contacts mostly ask for the same.
+pub(crate) struct PairSurfaces<'a> {
+    model: &'a Model,
+    last: Option<((u32, u32), PairSurface)>,
+}
+
+/// Marks a boundary among type numbers.
+const WALL: u32 = 1 << 31;
+
+impl<'a> PairSurfaces<'a> {
+    pub fn new(model: &'a Model) -> Self {
+        PairSurfaces { model, last: None }
+    }
+
+    pub fn of(&mut self, contact: &Contact) -> PairSurface {
+        let type_a = self.model.type_of[contact.a as usize];
+        let key_b = match contact.b {
+            Other::Body(slot) => self.model.type_of[slot as usize],
+            Other::Wall(index) => index | WALL,
+        };
+        if let Some((key, surface)) = self.last
+            && key == (type_a, key_b)
+        {
+            return surface;
+        }
+        let surface = self.compute(type_a, key_b);
+        self.last = Some(((type_a, key_b), surface));
+        surface
+    }
+
+    fn compute(&self, type_a: u32, key_b: u32) -> PairSurface {
+        let a: &BodyType = &self.model.types[type_a as usize];
+        let (b_surface, b_smooth) = if key_b & WALL != 0 {
+            (self.model.boundaries[(key_b ^ WALL) as usize].surface, true)
+        } else {
+            let b = &self.model.types[key_b as usize];
+            (b.surface, b.is_plain_sphere())
+        };
+        let friction = a.surface.friction_combine.of_pair(b_surface.friction_combine);
+        let restitution = a.surface.restitution_combine.of_pair(b_surface.restitution_combine);
+        let friction = friction.apply(a.surface.friction, b_surface.friction);
+        PairSurface {
+            friction,
+            restitution: restitution.apply(a.surface.restitution, b_surface.restitution),
+            smooth_spheres: friction == 0.0 && a.is_plain_sphere() && b_smooth,
+        }
+    }
+}

@@ -1,3 +1,0 @@
-//! The face of the library.
-/// A world.
-pub struct World {}

@@ -1,0 +1,111 @@
+//! Energies, momenta, and the booking of changes made from outside.
+
+use super::World;
+use crate::field::sum::potential_energy;
+use crate::ledger::{Energy, Ledger};
+use crate::math::{Real, Vec3};
+
+impl World {
+    /// Energies now \[J\], summed in order of creation.
+    pub fn energy(&self) -> Energy {
+        let mut energy = Energy::default();
+        for slot in self.model.order() {
+            let (linear, rotational) = self.kinetic_of(slot as usize);
+            energy.linear += linear;
+            energy.rotational += rotational;
+        }
+        energy.potential = potential_energy(&self.model, &self.state);
+        energy
+    }
+
+    /// Energies when the first step began \[J\]; before it, those now.
+    pub fn initial_energy(&self) -> Energy {
+        self.books.initial.unwrap_or_else(|| self.energy())
+    }
+
+    /// Where the energy went since the first step.
+    pub fn ledger(&self) -> &Ledger {
+        &self.books.ledger
+    }
+
+    /// Momentum of all bodies \[Ns\], equation (11).
+    pub fn momentum(&self) -> Vec3 {
+        self.model.order().into_iter().map(|slot| self.momentum_of(slot as usize)).sum()
+    }
+
+    /// Angular momentum of all bodies about the origin \[Js\], equation (20) and the spins.
+    pub fn angular_momentum(&self) -> Vec3 {
+        let of = |slot: usize| self.state.lines[slot].x.cross(self.momentum_of(slot)) + self.state.spins[slot].l;
+        self.model.order().into_iter().map(|slot| of(slot as usize)).sum()
+    }
+
+    fn momentum_of(&self, slot: usize) -> Vec3 {
+        if self.model.fixed[slot] { Vec3::ZERO } else { self.state.lines[slot].v * self.model.body(slot).mass }
+    }
+
+    /// Energy of translation and of rotation of the body in a slot \[J\].
+    fn kinetic_of(&self, slot: usize) -> (Real, Real) {
+        if self.model.fixed[slot] {
+            return (0.0, 0.0);
+        }
+        let (body, line, spin) = (self.model.body(slot), &self.state.lines[slot], &self.state.spins[slot]);
+        (0.5 * body.mass * line.v.length_squared(), body.inertia.energy(spin.q, spin.l))
+    }
+
+    /// Kinetic energy of one body and the potential energy of all: what a change to this body can change.
+    fn energy_round(&self, slot: usize) -> Real {
+        let (linear, rotational) = self.kinetic_of(slot);
+        let potential = if self.model.forces.is_empty() { 0.0 } else { potential_energy(&self.model, &self.state) };
+        linear + rotational + potential
+    }
+
+    /// Makes a change to one body; once the world has lived, books the energy to `user`.
+    pub(super) fn booking_one(&mut self, slot: usize, change: impl FnOnce(&mut World)) {
+        if self.books.initial.is_none() {
+            return change(self);
+        }
+        let before = self.energy_round(slot);
+        change(self);
+        self.refresh_scopes();
+        self.books.ledger.user += self.energy_round(slot) - before;
+    }
+
+    /// Makes a change to the fields or the medium; once the world has lived, books the energy to `user`.
+    pub(super) fn booking_all(&mut self, change: impl FnOnce(&mut World)) {
+        if self.books.initial.is_none() {
+            return change(self);
+        }
+        let before = potential_energy(&self.model, &self.state);
+        change(self);
+        self.refresh_scopes();
+        self.books.ledger.user += potential_energy(&self.model, &self.state) - before;
+    }
+
+    /// Books a body just made.
+    pub(super) fn book_created(&mut self, slot: usize) {
+        if self.books.initial.is_some() {
+            self.books.ledger.created_removed += self.energy_with_and_without(slot);
+        }
+    }
+
+    /// Books a body about to go.
+    pub(super) fn book_removed(&mut self, slot: usize) {
+        if self.books.initial.is_some() {
+            self.books.ledger.created_removed -= self.energy_with_and_without(slot);
+        }
+    }
+
+    /// What the world's energy owes to one body.
+    fn energy_with_and_without(&mut self, slot: usize) -> Real {
+        self.refresh_scopes();
+        let (linear, rotational) = self.kinetic_of(slot);
+        let mut potential = 0.0;
+        if !self.model.forces.is_empty() {
+            let with = potential_energy(&self.model, &self.state);
+            let radius = std::mem::replace(&mut self.state.lines[slot].radius, -1.0);
+            potential = with - potential_energy(&self.model, &self.state);
+            self.state.lines[slot].radius = radius;
+        }
+        linear + rotational + potential
+    }
+}
