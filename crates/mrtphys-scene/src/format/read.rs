@@ -382,3 +382,9 @@ fn map(name: &'static str, of: &'static Table, t: &DeTable, found: &mut Findings
     }
     out
 }
+
+/// Checks a single value, for tests of the table of keys.
+#[cfg(test)]
+pub(crate) fn check_value(key: &'static Key, v: &DeValue, found: &mut Findings) -> Checked<Option<Val>> {
+    checked(key, v, 0..0, &Here { object: "test", path: "" }, found)
+}
