@@ -1,6 +1,6 @@
 //! Body tables as CSV (RFC 4180) with a header line.
 
-use super::{NO_MATERIAL, Reading, TableRow, TableRows, TableShape};
+use super::{Reading, TableRow, TableRows, TableShape};
 use crate::diagnostics::{Diagnostic, Diagnostics, MOST_REPORTED, Place};
 use std::borrow::Cow;
 use std::fmt::Write as _;
