@@ -78,7 +78,7 @@ impl Polyhedron {
     /// face without area, not plane, or whose outline meets itself; an edge with one or more than two faces, or two faces
     /// of opposite sense; parts that touch in a point, several surfaces, a surface that meets itself or is inside out, no
     /// volume. [`Error::NonFinite`], [`Error::OutOfRange`], [`Error::TooFewPoints`] for the points;
-    /// [`Error::LimitExceeded`] above [`MAX_CORNERS`] and the limits of [`decompose`](super::decompose).
+    /// [`Error::LimitExceeded`] above [`MAX_CORNERS`] and the limits of [`decompose`].
     pub fn from_mesh(points: &[Vec3], faces: &[Vec<u32>]) -> Result<Polyhedron> {
         let surface = Surface::build("polyhedron", points, faces, Origin::Author)?;
         Polyhedron::of_surface("polyhedron", "polyhedron", surface)
