@@ -7,6 +7,7 @@ use super::{FlowField, ForceField, Reach, Scope};
 use crate::error::{Error, Result};
 use crate::math::{Real, Vec3};
 use crate::model::Model;
+use crate::motion::FARTHEST;
 use crate::par::{BLOCK, for_each_block};
 use crate::state::{Line, State};
 use rayon::prelude::*;
@@ -43,6 +44,8 @@ pub fn acceleration_of(model: &Model, state: &State, slot: usize) -> Vec3 {
 struct Acting<'a, F: ?Sized> {
     field: &'a F,
     number: usize,
+    /// what it gives everywhere, if that is always the same
+    uniform: Option<Vec3>,
     carrier: Option<usize>,
     only: Option<&'a [bool]>,
     reacts: bool,
@@ -50,14 +53,24 @@ struct Acting<'a, F: ?Sized> {
 
 impl<'a, F: ?Sized> Acting<'a, F> {
     /// `None`: its carrier is gone or set aside, and the field with it.
-    fn new(field: &'a F, number: usize, scope: &Scope, reach: &'a Reach, lines: &[Line]) -> Option<Acting<'a, F>> {
+    fn new(
+        field: &'a F,
+        uniform: Option<Vec3>,
+        scope: &Scope,
+        reach: &'a Reach,
+        lines: &[Line],
+    ) -> Option<Acting<'a, F>> {
         let carrier = reach.carrier.map(|slot| slot as usize);
         let carried_by = |slot: usize| lines.get(slot).filter(|line| line.radius >= 0.0);
         if reach.gone || carrier.is_some_and(|slot| carried_by(slot).is_none()) {
             return None;
         }
         let reacts = !scope.without_reaction && carrier.is_some_and(|slot| lines[slot].inverse_mass > 0.0);
-        Some(Acting { field, number, carrier, only: reach.only.as_deref(), reacts })
+        Some(Acting { field, number: 0, uniform, carrier, only: reach.only.as_deref(), reacts })
+    }
+
+    fn numbered(self, number: usize) -> Acting<'a, F> {
+        Acting { number, ..self }
     }
 
     fn acts_on(&self, slot: usize) -> bool {
@@ -74,6 +87,11 @@ impl<'a, F: ?Sized> Acting<'a, F> {
     }
 }
 
+/// Sum of fields of which every one is the same everywhere, for all bodies.
+fn total<F: ?Sized>(fields: &[Acting<F>]) -> Option<Vec3> {
+    fields.iter().try_fold(Vec3::ZERO, |sum, f| f.uniform.filter(|_| f.everywhere()).map(|value| sum + value))
+}
+
 /// Where the bodies are, and how they move, at one moment of a step.
 #[derive(Clone, Copy)]
 pub(crate) struct Place<'a> {
@@ -86,9 +104,10 @@ pub(crate) struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// Whether the body moves at all, and is somewhere.
+    /// Whether the body moves at all, and is somewhere. Comparisons with NaN are false.
     pub fn is_there(&self, slot: usize) -> bool {
-        moves(&self.lines[slot]) && self.x[slot].is_finite()
+        let x = self.x[slot];
+        moves(&self.lines[slot]) & (x.x.abs() <= FARTHEST) & (x.y.abs() <= FARTHEST) & (x.z.abs() <= FARTHEST)
     }
 }
 
@@ -129,8 +148,16 @@ impl<'a> Fields<'a> {
         let flows = model.flows.iter().enumerate();
         Fields {
             model,
-            forces: forces.filter_map(|(i, f)| Acting::new(&*f.field, i, &f.scope, &f.reach, lines)).collect(),
-            flows: flows.filter_map(|(i, f)| Acting::new(&*f.field, i, &f.scope, &f.reach, lines)).collect(),
+            forces: forces
+                .filter_map(|(i, f)| {
+                    Some(Acting::new(&*f.field, f.field.uniform(), &f.scope, &f.reach, lines)?.numbered(i))
+                })
+                .collect(),
+            flows: flows
+                .filter_map(|(i, f)| {
+                    Some(Acting::new(&*f.field, f.field.uniform(), &f.scope, &f.reach, lines)?.numbered(i))
+                })
+                .collect(),
             weights: model.types.iter().map(|t| weight(t.mass, t.volume)).collect(),
         }
     }
@@ -140,28 +167,27 @@ impl<'a> Fields<'a> {
         self.forces.is_empty()
     }
 
-    /// The acceleration of each type of body, if it is the same everywhere and for all bodies of the type.
-    pub fn uniform_force(&self) -> Result<Option<Vec<Vec3>>> {
-        let mut sum = Vec3::ZERO;
+    /// [`Error::Callback`] where a field that is the same everywhere is not finite. Asked before anything has moved: such
+    /// fields cannot fail later.
+    pub fn check_uniform(&self) -> Result<()> {
         for force in &self.forces {
-            match force.field.uniform() {
-                Some(a) if force.everywhere() => sum += checked(a, "force", force.number, force.field)?,
-                _ => return Ok(None),
-            }
+            checked(force.uniform.unwrap_or_default(), "force", force.number, force.field)?;
         }
-        Ok(Some(self.weights.iter().map(|&weight| sum * weight).collect()))
+        for flow in &self.flows {
+            checked(flow.uniform.unwrap_or_default(), "flow", flow.number, flow.field)?;
+        }
+        Ok(())
+    }
+
+    /// The acceleration of each type of body, if it is the same everywhere and for all bodies of the type.
+    pub fn uniform_force(&self) -> Option<Vec<Vec3>> {
+        let sum = total(&self.forces)?;
+        Some(self.weights.iter().map(|&weight| sum * weight).collect())
     }
 
     /// The velocity of the medium, if it is the same everywhere and for all bodies.
-    pub fn uniform_flow(&self) -> Result<Option<Vec3>> {
-        let mut sum = Vec3::ZERO;
-        for flow in &self.flows {
-            match flow.field.uniform() {
-                Some(u) if flow.everywhere() => sum += checked(u, "flow", flow.number, flow.field)?,
-                _ => return Ok(None),
-            }
-        }
-        Ok(Some(sum))
+    pub fn uniform_flow(&self) -> Option<Vec3> {
+        total(&self.flows)
     }
 
     /// What all fields do to every body. [`Error::Callback`] where one of them gives what is not finite.
@@ -173,7 +199,7 @@ impl<'a> Fields<'a> {
         for flow in self.flows.iter().filter(|_| with_flow) {
             each(&mut out, |slot, push| {
                 if place.is_there(slot) && flow.acts_on(slot) {
-                    push.u += flow.field.velocity(flow.relative(place, slot));
+                    push.u += flow.uniform.unwrap_or_else(|| flow.field.velocity(flow.relative(place, slot)));
                 }
                 push.u.is_finite()
             })
@@ -221,7 +247,8 @@ impl<'a> Fields<'a> {
             return None;
         }
         let weight = self.weights[self.model.type_of[slot] as usize];
-        Some(force.field.acceleration(at, self.model.body(slot).mass) * weight)
+        let a = force.uniform.unwrap_or_else(|| force.field.acceleration(at, self.model.body(slot).mass));
+        Some(a * weight)
     }
 
     /// Force of one field on a body \[N\].
@@ -264,8 +291,8 @@ fn each(out: &mut [Push], f: impl Fn(usize, &mut Push) -> bool + Sync) -> std::r
     if failed.into_inner() { Err(()) } else { Ok(()) }
 }
 
-fn checked(value: Vec3, what: &str, number: usize, field: &(impl Debug + ?Sized)) -> Result<Vec3> {
-    if value.is_finite() { Ok(value) } else { Err(not_finite(what, number, field)) }
+fn checked(value: Vec3, what: &str, number: usize, field: &(impl Debug + ?Sized)) -> Result<()> {
+    if value.is_finite() { Ok(()) } else { Err(not_finite(what, number, field)) }
 }
 
 fn not_finite(what: &str, number: usize, field: &(impl Debug + ?Sized)) -> Error {

@@ -5,6 +5,7 @@ mod elliptic;
 pub mod rotation;
 pub mod translation;
 pub mod advance;
+mod varying;
 
-pub use advance::advance;
+pub use advance::{FARTHEST, advance};
 pub use rotation::rotate_free;
