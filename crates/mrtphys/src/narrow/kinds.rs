@@ -176,6 +176,11 @@ impl Kinds {
         self.names.iter().position(|n| n == name).map(|i| KindId(i as u16))
     }
 
+    /// Name of a kind.
+    pub fn name(&self, kind: KindId) -> &str {
+        &self.names[kind.index()]
+    }
+
     /// The kinds with their names, ascending.
     pub fn iter(&self) -> impl Iterator<Item = (KindId, &str)> {
         self.names.iter().enumerate().map(|(i, n)| (KindId(i as u16), n.as_str()))
