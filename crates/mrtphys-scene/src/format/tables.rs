@@ -200,7 +200,7 @@ static FLOW_FIELD: Table = Table {
         Case {
             name: "uniform",
             doc: "The same velocity everywhere.",
-            keys: &[Key::new("velocity", Vector(ANY), "velocity [m/s]").required()],
+            keys: &[Key::new("velocity", Vector(ANY), "velocity [m/s]").or("[0, 0, 0]")],
             exactly_one: &[],
         },
         Case {
