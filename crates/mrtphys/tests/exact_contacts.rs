@@ -6,10 +6,17 @@ use mrtphys::narrow::{Placed, Routine, Touches};
 use mrtphys::shape::{LimitQuadrangle, Polyhedron, Shape, Sphere};
 use mrtphys::{Mat3, Quat, Real, Vec3};
 use proptest::prelude::*;
+use std::sync::LazyLock;
 
 fn seeded(cases: u32, seed: u64) -> ProptestConfig {
     let rng_seed = proptest::test_runner::RngSeed::Fixed(seed);
-    ProptestConfig { cases, rng_seed, failure_persistence: None, ..ProptestConfig::default() }
+    ProptestConfig {
+        cases,
+        rng_seed,
+        failure_persistence: None,
+        max_global_rejects: 200_000,
+        ..ProptestConfig::default()
+    }
 }
 
 fn placed<'a>(shape: &'a dyn Shape, position: Vec3, rotation: &'a Mat3) -> Placed<'a> {
@@ -65,7 +72,12 @@ const CROSS: [(Real, Real); 12] = [
     (-1.0, -1.0),
 ];
 
-fn bodies() -> Vec<Polyhedron> {
+fn bodies() -> &'static [Polyhedron] {
+    static ALL: LazyLock<Vec<Polyhedron>> = LazyLock::new(make_bodies);
+    &ALL
+}
+
+fn make_bodies() -> Vec<Polyhedron> {
     let mut all = vec![prism(&U, 0.5), prism(&L, 0.5), prism(&CROSS, 0.5)];
     all.extend([3, 4, 5, 7].map(|rays| prism(&star(rays, 0.8), 0.5)));
     assert!(all.iter().all(|p| p.pieces().len() > 1));
@@ -87,13 +99,13 @@ fn any_rotation() -> impl Strategy<Value = Mat3> {
 }
 
 proptest! {
-    #![proptest_config(seeded(300, 1))]
+    #![proptest_config(seeded(1000, 1))]
 
     /// A small box on the flat top of a body of many pieces: wherever it stands, one contact with the box's own face, the
     /// top's normal and no spin. Cuts below it must not show.
     #[test]
     fn cuts_below_a_box_do_not_show(which in 0..7usize, x in -2.5..2.5f64, y in -2.5..2.5f64, turn in 0.0..6.0f64,
-                                    depth in 0.0..0.03f64, r in any_rotation(), swap: bool) {
+                                    depth in 1e-9..0.03f64, r in any_rotation(), swap: bool) {
         let profiles: Vec<Vec<(Real, Real)>> = [U.to_vec(), L.to_vec(), CROSS.to_vec()].into_iter()
             .chain([3, 4, 5, 7].map(|rays| star(rays, 0.8))).collect();
         let body = &bodies()[which];
@@ -206,7 +218,11 @@ fn flat_landings_of_bodies_of_pieces_give_no_spin() {
             let on = placed(&ground, Vec3::new(0.0, 0.0, -0.5), &Mat3::IDENTITY);
             let t = contacts(polyhedron_polyhedron::touch, &pb, &on);
             assert_eq!(t.list.len(), 1, "{:?}", t.list);
-            assert!((t.list[0].depth - 0.01).abs() < 1e-14 && t.list[0].normal == -Vec3::Z);
+            assert!(
+                (t.list[0].depth - 0.01).abs() < 1e-12 && (t.list[0].normal + Vec3::Z).length() < 1e-12,
+                "{:?}",
+                t.list
+            );
             assert!((t.list[0].point - expected).cross(Vec3::Z).length() < 1e-13, "{:?} {expected:?}", t.list[0]);
         }
     }

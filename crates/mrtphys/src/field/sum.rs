@@ -203,7 +203,7 @@ impl<'a> Fields<'a> {
                 }
                 push.u.is_finite()
             })
-            .or_else(|_| Err(not_finite("flow", flow.number, flow.field)))?;
+            .map_err(|()| not_finite("flow", flow.number, flow.field))?;
         }
         Ok(out)
     }
@@ -223,7 +223,7 @@ impl<'a> Fields<'a> {
             }
             a.is_finite()
         })
-        .or_else(|_| Err(not_finite("force", force.number, force.field)))?;
+        .map_err(|()| not_finite("force", force.number, force.field))?;
         if let Some(carrier) = force.carrier.filter(|_| force.reacts) {
             let forces: Vec<Vec3> =
                 (0..out.len()).into_par_iter().with_min_len(BLOCK).map(|i| self.force(force, place, i)).collect();

@@ -63,13 +63,18 @@ pub fn advance(
         fall(model, &mut state.lines, &accelerations, flow, &drag, ledger)
     };
     set_aside(model, state, &lost, ledger, counters);
-    work.accelerations.clear();
-    if !no_force {
-        let of = |slot: usize| {
-            if moves(&state.lines[slot]) { accelerations[model.type_of[slot] as usize] } else { Vec3::ZERO }
-        };
-        work.accelerations.extend((0..state.lines.len()).map(of));
+    if no_force {
+        work.accelerations.clear();
+        return Ok(());
     }
+    let lines = &state.lines;
+    work.accelerations.resize(lines.len(), Vec3::ZERO);
+    for_each_block(&mut work.accelerations, |first, block| {
+        for (i, a) in block.iter_mut().enumerate() {
+            let slot = first + i;
+            *a = if moves(&lines[slot]) { accelerations[model.type_of[slot] as usize] } else { Vec3::ZERO };
+        }
+    });
     Ok(())
 }
 

@@ -122,8 +122,8 @@ impl Step<'_> {
         let v: Vec<Vec3> = predicted.iter().map(|m| m.v).collect();
         let last = self.push(&x, &v)?;
         let mut end = self.end(x, v, last, &first);
-        for slot in 0..start.x.len() {
-            let (p, q, v) = (first[slot], end.push[slot], start.v[slot]);
+        for (slot, p) in first.iter().enumerate() {
+            let (q, v) = (end.push[slot], start.v[slot]);
             let (a, u) = ((p.a + q.a) * 0.5, (p.u + q.u) * 0.5);
             let next = if self.drag.is_void() { v + a * self.drag.dt } else { self.drag.velocity(v, a, u) };
             end.v[slot] = next;

@@ -121,6 +121,9 @@ fn turn_flat(q: &Quadrangle, rotation: &Mat3, out: &mut Turned) {
 pub(crate) fn touch_pieces(a: (&Placed<'_>, Pieces<'_>), b: (&Placed<'_>, Pieces<'_>), out: &mut Touches) {
     let ((place_a, a), (place_b, b)) = (a, b);
     let offset = place_b.position - place_a.position;
+    if !offset.is_finite() {
+        return;
+    }
     let first = out.list.len();
     let (count_a, count_b) = (a.count(), b.count());
     let mut turned_b = usize::MAX;
@@ -133,7 +136,7 @@ pub(crate) fn touch_pieces(a: (&Placed<'_>, Pieces<'_>), b: (&Placed<'_>, Pieces
             let size = ball_a.radius + ball_b.radius;
             let between = offset + *place_b.rotation * ball_b.center - center_a;
             let reach = size + FLAT * size;
-            if !(between.length_squared() <= reach * reach) {
+            if between.length_squared() > reach * reach {
                 continue;
             }
             if !turned_a {
@@ -153,7 +156,7 @@ pub(crate) fn touch_pieces(a: (&Placed<'_>, Pieces<'_>), b: (&Placed<'_>, Pieces
                 coplanar: false,
             };
             pair.coplanar = a.is_flat() && b.is_flat() && in_one_plane(&pair);
-            let Some(axis) = pair.least_overlap(axes) else { continue };
+            let Some(axis) = pair.least_overlap(axes, |axis| can_be_normal(&pair, axis, clip)) else { continue };
             let number = i * count_b + j;
             let feature = feature_number(&axis, &pair, number, count_a * count_b);
             let depth = max(-axis.gap, 0.0);
@@ -170,6 +173,28 @@ pub(crate) fn touch_pieces(a: (&Placed<'_>, Pieces<'_>), b: (&Placed<'_>, Pieces
         let size = place_a.ball.radius + place_b.ball.radius;
         merge_equal(out, first, TIE * size);
     }
+}
+
+/// Whether an axis can be the normal: whether both bodies face each other along it where they touch. A side of one against
+/// a cut through the other may overlap less than anything else, but nothing can come out that way. Where a face goes on
+/// as a cut, it depends on the place.
+fn can_be_normal(pair: &Pair<'_>, axis: &Axis, clip: &mut ClipScratch) -> bool {
+    let (a, b) = (pair.a.whole, pair.b.whole);
+    if a.is_none() && b.is_none() {
+        return true;
+    }
+    // Corners of other faces divide an edge into several. They all lie along this axis, but they meet the other only once:
+    // least overlap of convex pieces is always where the lines are closest.
+    if let Feature::Edges(i, j) = axis.feature
+        && !between_edges(pair, i as usize, j as usize).1
+    {
+        return false;
+    }
+    let depth = max(-axis.gap, 0.0);
+    contact_area(pair, axis, depth, clip);
+    let (middle, half) = (perimeter_centroid(&clip.area), axis.normal * (0.5 * depth));
+    a.is_none_or(|w| w.faces(middle + half, axis.normal))
+        && b.is_none_or(|w| w.faces(middle - half - pair.offset, -axis.normal))
 }
 
 /// Whether two quadrangles lie in one plane. They then meet at their rims: the common normal separates nothing, and no
@@ -205,7 +230,7 @@ fn contact_area(pair: &Pair<'_>, axis: &Axis, depth: Real, clip: &mut ClipScratc
     match axis.feature {
         Feature::Edges(i, j) => {
             clip.area.clear();
-            clip.area.push(between_edges(pair, i as usize, j as usize));
+            clip.area.push(between_edges(pair, i as usize, j as usize).0);
             return;
         }
         Feature::FaceA(f) if a.topology.faces[f as usize].corners.len() > 2 => {
@@ -262,8 +287,8 @@ fn between_caps(pair: &Pair<'_>, n: Vec3, (top_a, depth, level): (Real, Real, Re
 
 /// The middle of the closest points of two edges that are not parallel. With w = q - p, the points p + s u and q + t v are
 /// closest where (p + s u - q - t v) is perpendicular to u and v: s = ((w.u)(v.v) - (w.v)(u.v)) / D, t = ((w.u)(u.v) -
-/// (w.v)(u.u)) / D, D = (u.u)(v.v) - (u.v)^2.
-fn between_edges(pair: &Pair<'_>, i: usize, j: usize) -> Vec3 {
+/// (w.v)(u.u)) / D, D = (u.u)(v.v) - (u.v)^2. And whether these lie on the edges: otherwise only the lines come as close.
+fn between_edges(pair: &Pair<'_>, i: usize, j: usize) -> (Vec3, bool) {
     let (a, b) = (pair.a, pair.b);
     let p = a.turned.corners[a.topology.edges[i].ends[0] as usize];
     let q = b.turned.corners[b.topology.edges[j].ends[0] as usize] + pair.offset;
@@ -273,9 +298,10 @@ fn between_edges(pair: &Pair<'_>, i: usize, j: usize) -> Vec3 {
     let (uu, uv, vv, wu, wv) = (u.dot(u), u.dot(v), v.dot(v), w.dot(u), w.dot(v));
     // |u x v|^2, not (u.u)(v.v) - (u.v)^2: for nearly parallel edges the difference is rounding.
     let d = u.cross(v).length_squared();
-    let s = ((wu * vv - wv * uv) / d).clamp(0.0, 1.0);
-    let t = ((wu * uv - wv * uu) / d).clamp(0.0, 1.0);
-    0.5 * ((p + a.turned.edges[i] * s) + (q + b.turned.edges[j] * t))
+    let (s, t) = ((wu * vv - wv * uv) / d, (wu * uv - wv * uu) / d);
+    let (on_a, on_b) = (s.clamp(0.0, 1.0), t.clamp(0.0, 1.0));
+    let past = max((s - on_a).abs(), (t - on_b).abs());
+    (0.5 * ((p + a.turned.edges[i] * on_a) + (q + b.turned.edges[j] * on_b)), past <= TIE)
 }
 
 /// Makes one contact of those from `first` on whose normals agree and whose depths differ by no more than `tolerance`. The

@@ -105,10 +105,13 @@ pub(crate) struct Whole<'a> {
 
 impl Whole<'_> {
     /// Whether a point on the surface of the piece is one where the surface of the whole body faces the direction: whether
-    /// no other piece that holds the point reaches further along it. On a cut through the body some other piece does. Both
-    /// in the body's own coordinates.
-    pub fn faces(&self, point: Vec3, direction: Vec3, tolerance: Real) -> bool {
-        let height = direction.dot(point) + tolerance;
+    /// no other piece that holds the point reaches further along it. On a cut through the body some other piece does. The
+    /// point relative to the body's centre of mass, both in the world's axes.
+    pub fn faces(&self, point: Vec3, direction: Vec3) -> bool {
+        // The pieces of a body fit each other to the tolerance with which it was cut.
+        let tolerance = TIE * self.pieces[self.number].ball.radius;
+        let (point, direction) = (self.rotation.transpose_mul(point), self.rotation.transpose_mul(direction));
+        let height = direction.dot(point) + 2.0 * tolerance;
         self.pieces.iter().enumerate().all(|(i, p)| {
             i == self.number || !holds(p, point, tolerance) || p.corners.iter().all(|c| direction.dot(*c) <= height)
         })
@@ -138,15 +141,6 @@ impl Solid<'_> {
                 out.extend(self.turned.corners.iter().copied().filter(|&c| n.dot(c) >= lowest));
             }
         }
-    }
-
-    /// Whether the whole body faces the direction where the piece reaches furthest along it.
-    fn faces(&self, direction: Vec3, tolerance: Real) -> bool {
-        let Some(whole) = self.whole else { return true };
-        let own = whole.rotation.transpose_mul(direction);
-        let furthest = self.turned.high(direction) - tolerance;
-        let corners = self.turned.corners.iter().zip(&whole.pieces[whole.number].corners);
-        corners.filter(|(t, _)| direction.dot(**t) >= furthest).any(|(_, c)| whole.faces(*c, own, tolerance))
     }
 }
 
@@ -219,8 +213,9 @@ impl Pair<'_> {
     }
 
     /// The axis of least overlap, or `None` where an axis separates the pieces; pieces that touch are not separated.
-    pub fn least_overlap(&self, scratch: &mut AxisScratch) -> Option<Axis> {
-        let mut search = Search { pair: self, best: Real::NEG_INFINITY, spare: None, scratch };
+    /// `accept` says whether an axis can be the normal; where there is none that can, the others have to do.
+    pub fn least_overlap(&self, scratch: &mut AxisScratch, accept: impl FnMut(&Axis) -> bool) -> Option<Axis> {
+        let mut search = Search { pair: self, best: Real::NEG_INFINITY, spare: None, scratch, accept };
         search.scratch.tied.clear();
         search.reaches();
         if search.separated_by_a_face() || (!self.coplanar && search.separated_by_edges()) {
@@ -230,16 +225,17 @@ impl Pair<'_> {
     }
 }
 
-struct Search<'p, 's> {
+struct Search<'p, 's, F> {
     pair: &'p Pair<'p>,
     /// largest gap of an axis that may be a normal
     best: Real,
     /// the best of the axes that only separate: used where nothing else is there
     spare: Option<Axis>,
     scratch: &'s mut AxisScratch,
+    accept: F,
 }
 
-impl Search<'_, '_> {
+impl<F: FnMut(&Axis) -> bool> Search<'_, '_, F> {
     fn tie(&self) -> Real {
         TIE * self.pair.size
     }
@@ -313,15 +309,12 @@ impl Search<'_, '_> {
         reach >= 0.0 || reach >= self.best - self.tie()
     }
 
-    /// Notes an axis. It can be the normal where both bodies face each other along it: a side of one against a cut through
-    /// the other may overlap less than anything else, but nothing can come out that way.
+    /// Notes an axis.
     fn keep(&mut self, axis: Axis) {
         if axis.gap < self.best - self.tie() {
             return;
         }
-        // The pieces of a body fit each other to the tolerance with which it was cut.
-        let tolerance = TIE * self.pair.size;
-        if self.pair.a.faces(axis.normal, tolerance) && self.pair.b.faces(-axis.normal, tolerance) {
+        if (self.accept)(&axis) {
             self.best = crate::math::max(self.best, axis.gap);
             self.scratch.tied.push(axis);
         } else if self.spare.is_none_or(|s| axis.gap > s.gap) {

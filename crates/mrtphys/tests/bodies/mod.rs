@@ -34,7 +34,7 @@ impl Shape for Dot {
 
 /// No pair is ever asked about.
 fn table() -> PairTable {
-    PairTable {}
+    Kinds::standard(ContactMode::Exact).resolve()
 }
 
 #[derive(Default)]

@@ -306,3 +306,30 @@ fn quadrangles_are_the_limit_of_slabs() {
     }
     assert!(hits > 200);
 }
+
+#[test]
+fn what_is_not_a_number_touches_nothing() {
+    let (b, q, i) = (cuboid(0.5, 0.5, 0.5), plate(1.0, 1.0), Mat3::IDENTITY);
+    let (s, w) = (ball(0.5), wall(Vec3::Y));
+    let nowhere = Vec3::new(0.0, Real::NAN, 0.0);
+    let shapes: [&dyn crate::shape::Shape; 4] = [&b, &q, &s, &w];
+    let routines: [crate::narrow::Routine; 7] = [
+        polyhedron_polyhedron::touch,
+        polyhedron_quadrangle::touch,
+        quadrangle_quadrangle::touch,
+        crate::narrow::pairs::polyhedron_half_space::touch,
+        crate::narrow::pairs::quadrangle_half_space::touch,
+        crate::narrow::pairs::sphere_polyhedron::touch,
+        crate::narrow::pairs::sphere_quadrangle::touch,
+    ];
+    // Shapes that a routine is not for, too: no contact or a finite one, never a panic.
+    for routine in routines {
+        for first in shapes {
+            for second in shapes {
+                let t = contacts(routine, &placed(first, nowhere, &i), &placed(second, Vec3::ZERO, &i));
+                assert!(t.list.is_empty(), "{t:?}");
+                contacts(routine, &placed(first, Vec3::ZERO, &i), &placed(second, Vec3::ZERO, &i));
+            }
+        }
+    }
+}

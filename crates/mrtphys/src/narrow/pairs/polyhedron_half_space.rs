@@ -30,7 +30,8 @@ pub(super) fn corners_against_wall(a: &Placed<'_>, corners: &[Vec3], wall: (Vec3
     let down = a.rotation.transpose_mul(normal);
     let lowest = corners.iter().fold(Real::INFINITY, |m, c| crate::math::min(m, down.dot(*c)));
     let depth = -(height + lowest);
-    if !(depth >= 0.0) {
+    let touches = depth >= 0.0;
+    if !touches {
         return;
     }
     let tied = lowest + FLAT * a.ball.radius;

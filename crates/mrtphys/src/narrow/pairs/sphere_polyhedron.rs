@@ -32,16 +32,17 @@ pub(super) fn nearest_on_polygon(
         let (p, q) = (corner(i), corner(j));
         let along = q - p;
         let to = c - p;
-        if !(along.cross(normal).dot(to) > 0.0) {
+        let is_outer = along.cross(normal).dot(to) > 0.0;
+        if !is_outer {
             continue;
         }
         let (part, whole) = (along.dot(to), along.length_squared());
-        let (point, on) = if !(part > 0.0) {
-            (p, (i, i))
-        } else if part >= whole {
+        let (point, on) = if part >= whole {
             (q, (j, j))
-        } else {
+        } else if part > 0.0 {
             (p + along * (part / whole), (i, j))
+        } else {
+            (p, (i, i))
         };
         let distance_squared = (c - point).length_squared();
         if nearest.is_none_or(|n| distance_squared < n.distance_squared) {
@@ -86,6 +87,9 @@ pub fn touch(a: &Placed<'_>, b: &Placed<'_>, out: &mut Touches) {
         return;
     }
     let c = b.rotation.transpose_mul(center - b.position);
+    if !c.is_finite() || !radius.is_finite() {
+        return;
+    }
     let pieces = polyhedron.pieces.as_slice();
     let size = radius + polyhedron.ball.radius;
     let mut places = std::mem::take(&mut out.scratch.places);
@@ -93,7 +97,7 @@ pub fn touch(a: &Placed<'_>, b: &Placed<'_>, out: &mut Touches) {
     let mut inside = false;
     for (i, piece) in pieces.iter().enumerate() {
         let reach = (radius + piece.ball.radius) * (1.0 + FLAT);
-        if !((c - piece.ball.center).length_squared() <= reach * reach) {
+        if (c - piece.ball.center).length_squared() > reach * reach {
             continue;
         }
         match see(pieces, i, c, radius, size) {
@@ -133,7 +137,7 @@ fn see(pieces: &[ConvexPiece], number: usize, c: Vec3, radius: Real, size: Real)
         if height > radius {
             return Seen::TooFar;
         }
-        if !(height > 0.0) {
+        if height <= 0.0 {
             continue;
         }
         inside = false;

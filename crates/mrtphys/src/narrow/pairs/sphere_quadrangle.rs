@@ -22,7 +22,8 @@ pub fn touch(a: &Placed<'_>, b: &Placed<'_>, out: &mut Touches) {
     }
     let c = b.rotation.transpose_mul(center - b.position);
     let height = q.normal.dot(c - q.corners[0]);
-    if !(height.abs() <= radius) {
+    let reaches = height.abs() <= radius && radius.is_finite();
+    if !reaches {
         return;
     }
     let nearest = nearest_on_polygon(4, |i| q.corners[i], (q.normal, height), c);
@@ -30,7 +31,7 @@ pub fn touch(a: &Placed<'_>, b: &Placed<'_>, out: &mut Touches) {
         None if height < 0.0 => (-height, -q.normal, 0),
         None => (height, q.normal, 0),
         Some((i, j)) => {
-            if !(nearest.distance_squared <= radius * radius) {
+            if nearest.distance_squared > radius * radius {
                 return;
             }
             let distance = nearest.distance_squared.sqrt();
