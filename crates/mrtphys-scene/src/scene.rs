@@ -63,7 +63,7 @@ impl Content {
     pub fn count(&self) -> u64 {
         match self {
             Content::Body(_) => 1,
-            Content::Lattice(l) => l.count.iter().map(|&n| u64::from(n)).product(),
+            Content::Lattice(l) => l.count.iter().fold(1, |n: u64, &c| n.saturating_mul(c.into())),
             Content::Table(t) => t.rows.len() as u64,
         }
     }

@@ -49,7 +49,7 @@ fn empty_truncated_and_binary() {
     assert!(headline(b"format = 1\ntitle = \"a\0b\"\n").starts_with("scene.toml:2:11: syntax: "));
     assert_eq!(
         headline(b"format = 1\n[[body]]\nshape = { kind = 'sphere', radius"),
-        "scene.toml:3:34: syntax: key with no value, expected `=`"
+        "scene.toml:3:34: syntax: unclosed inline table, expected `}`"
     );
 }
 
