@@ -429,12 +429,7 @@ pub struct Camera {
 
 impl Default for Camera {
     fn default() -> Camera {
-        Camera {
-            eye: Vec3::new(2.0, 1.5, 3.0),
-            look_at: Vec3::splat(0.5),
-            up: Vec3::new(0.0, 1.0, 0.0),
-            fov_deg: 45.0,
-        }
+        Camera { eye: Vec3::new(2.0, 1.5, 3.0), look_at: Vec3::splat(0.5), up: Vec3::new(0.0, 1.0, 0.0), fov_deg: 45.0 }
     }
 }
 

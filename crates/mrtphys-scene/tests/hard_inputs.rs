@@ -3,6 +3,7 @@
 use mrtphys_scene::scene::{Content, Placement};
 use mrtphys_scene::{Diagnostics, LARGEST_TEXT, MOST_VALUES, Scene, Source};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 fn read(bytes: &[u8]) -> Result<Scene, Diagnostics> {
     Scene::parse(Source::from_bytes("scene.toml", bytes, None)?)
@@ -35,7 +36,10 @@ fn empty_truncated_and_binary() {
     assert_eq!(headline(b""), "scene.toml:1:1: scene: key 'format' is missing");
     assert_eq!(headline(b"\n \t\n# nothing\n"), "scene.toml:1:1: scene: key 'format' is missing");
     assert_eq!(headline(&[0xFF; 64]), "scene.toml:1:1: the text is not UTF-8 (byte 0xFF at offset 0)");
-    assert_eq!(headline(b"format = 1\nti\xC3tle = 'x'\n"), "scene.toml:2:3: the text is not UTF-8 (byte 0xC3 at offset 13)");
+    assert_eq!(
+        headline(b"format = 1\nti\xC3tle = 'x'\n"),
+        "scene.toml:2:3: the text is not UTF-8 (byte 0xC3 at offset 13)"
+    );
     // Columns are characters: a-umlaut is one.
     assert_eq!(
         headline("title = 'ä\u{FFFF}".as_bytes().split_last().expect("bytes").1),
@@ -93,7 +97,10 @@ fn depth_of_a_million() {
 #[test]
 fn sizes_are_bounded() {
     let large = vec![b'#'; LARGEST_TEXT as usize + 1];
-    assert_eq!(headline(&large), "scene.toml: the scene text is larger than 64 MiB; put many bodies into a [[body_table]]");
+    assert_eq!(
+        headline(&large),
+        "scene.toml: the scene text is larger than 64 MiB; put many bodies into a [[body_table]]"
+    );
     assert!(read(&large[1..]).is_err_and(|e| e.list[0].message.contains("'format' is missing")));
     let many = format!("format = 1\ntitle = [{}]", "1,".repeat(MOST_VALUES));
     assert!(headline(many.as_bytes()).contains("more than 5000000 values"));
@@ -130,7 +137,9 @@ fn numbers() {
     // Exactly between two numbers, plus one digit a hundred thousand places further on.
     let tie = format!("9007199254740993.{}1", "0".repeat(100_000));
     assert_eq!(bits(&tie), Ok(9_007_199_254_740_994.0_f64.to_bits()));
-    let refused = |text: &str, message: &str| assert_eq!(number(text), Err(format!("body 'body0': position: {message}")), "{text}");
+    let refused = |text: &str, message: &str| {
+        assert_eq!(number(text), Err(format!("body 'body0': position: {message}")), "{text}")
+    };
     refused("1e999", "the number 1e999 is too large");
     refused("-1e999", "the number -1e999 is too large");
     refused("nan", "nan is not a finite number");
@@ -162,10 +171,19 @@ fn duplicates() {
 fn names() {
     let named = |name: &str| headline(format!("format = 1\n[[boundary]]\nname = {name}\n").as_bytes());
     assert_eq!(named("''"), "scene.toml:3:8: boundary 'boundary0': name: a name must not be empty");
-    assert_eq!(named("\"a\\u0000b\""), "scene.toml:3:8: boundary 'boundary0': name: a name must not contain control characters");
-    assert_eq!(named("\"a\\nb\""), "scene.toml:3:8: boundary 'boundary0': name: a name must not contain control characters");
+    assert_eq!(
+        named("\"a\\u0000b\""),
+        "scene.toml:3:8: boundary 'boundary0': name: a name must not contain control characters"
+    );
+    assert_eq!(
+        named("\"a\\nb\""),
+        "scene.toml:3:8: boundary 'boundary0': name: a name must not contain control characters"
+    );
     let long = format!("'{}'", "x".repeat(257));
-    assert_eq!(named(&long), "scene.toml:3:8: boundary 'boundary0': name: a name must not be longer than 256 characters");
+    assert_eq!(
+        named(&long),
+        "scene.toml:3:8: boundary 'boundary0': name: a name must not be longer than 256 characters"
+    );
 }
 
 #[test]
@@ -216,18 +234,70 @@ fn is_answered(bytes: &[u8]) {
 /// Pieces of scenes, put together at random, reach deeper than random bytes.
 fn pieces() -> impl Strategy<Value = String> {
     let piece = prop::sample::select(vec![
-        "format = 1\n", "[[body]]\n", "[[lattice]]\n", "[[boundary]]\n", "[simulation]\n", "[medium]\n", "[camera]\n",
-        "[material.a]\n", "[[force_field]]\n", "[[flow_field]]\n", "[[light]]\n", "[[body_table]]\n", "kind = ", "'sphere'", "'box'",
-        "'point'", "'plane'", "name = ", "'a'", "\n", "shape = ", "{", "}", "[", "]", ",", "radius = ", "points = ", "count = ",
-        "body = ", "mass = ", "1", "-1", "0.5", "1e999", "nan", "0x", "[1, 2, 3]", "[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]", "faces = ",
-        "[[0, 1, 2]]", "true", "\"", "'", "#", "ä", "\r\n", "\u{FEFF}", "position = ", "material = ", "fps = ", "seed = ", ".", "=",
-        "only = ", "['a', 'b']", "shape = { kind = 'sphere', radius = 0.1 }\n", "position = [0, 0, 0]\n",
+        "format = 1\n",
+        "[[body]]\n",
+        "[[lattice]]\n",
+        "[[boundary]]\n",
+        "[simulation]\n",
+        "[medium]\n",
+        "[camera]\n",
+        "[material.a]\n",
+        "[[force_field]]\n",
+        "[[flow_field]]\n",
+        "[[light]]\n",
+        "[[body_table]]\n",
+        "kind = ",
+        "'sphere'",
+        "'box'",
+        "'point'",
+        "'plane'",
+        "name = ",
+        "'a'",
+        "\n",
+        "shape = ",
+        "{",
+        "}",
+        "[",
+        "]",
+        ",",
+        "radius = ",
+        "points = ",
+        "count = ",
+        "body = ",
+        "mass = ",
+        "1",
+        "-1",
+        "0.5",
+        "1e999",
+        "nan",
+        "0x",
+        "[1, 2, 3]",
+        "[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]",
+        "faces = ",
+        "[[0, 1, 2]]",
+        "true",
+        "\"",
+        "'",
+        "#",
+        "ä",
+        "\r\n",
+        "\u{FEFF}",
+        "position = ",
+        "material = ",
+        "fps = ",
+        "seed = ",
+        ".",
+        "=",
+        "only = ",
+        "['a', 'b']",
+        "shape = { kind = 'sphere', radius = 0.1 }\n",
+        "position = [0, 0, 0]\n",
     ]);
     prop::collection::vec(piece, 0..40).prop_map(|p| p.concat())
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 600, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 600, failure_persistence: None, rng_seed: RngSeed::Fixed(1998), ..ProptestConfig::default() })]
 
     #[test]
     fn any_bytes_are_answered(bytes in prop::collection::vec(any::<u8>(), 0..400)) {

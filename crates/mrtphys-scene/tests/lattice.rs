@@ -60,7 +60,10 @@ fn jitter_speed_and_spin_are_drawn_in_the_documented_order() {
 
 #[test]
 fn nothing_is_drawn_for_what_is_zero() {
-    let text = JITTERED.replace("jitter = 0.5", "jitter = 0").replace("spin = 3", "spin = 0").replace("speed = 2", "speed = 1");
+    let text = JITTERED
+        .replace("jitter = 0.5", "jitter = 0")
+        .replace("spin = 3", "spin = 0")
+        .replace("speed = 2", "speed = 1");
     let text = text.replace("[[lattice]]", "[simulation]\nseed = 2\n[[lattice]]");
     let first = rows(&build(&text))[0];
     assert_eq!(first, ([0.5, 0.5, 0.5 / 3.0], [0.8622633310608714, 0.12081364169121281, 0.4918394167704711], [0.0; 3]));
@@ -78,7 +81,8 @@ fn kinds_take_turns_and_k_runs_fastest() {
                 let body = loaded.world.body(id).expect("a body");
                 let radius = if (i + j + k) % 2 == 0 { 0.125 } else { 0.0625 };
                 assert_eq!(body.shape.bounding_sphere().radius, radius);
-                let center = Vec3::new((f64::from(i) + 0.5) / 2.0, (f64::from(j) + 0.5) / 3.0, (f64::from(k) + 0.5) / 4.0);
+                let center =
+                    Vec3::new((f64::from(i) + 0.5) / 2.0, (f64::from(j) + 0.5) / 3.0, (f64::from(k) + 0.5) / 4.0);
                 assert!((body.position - center).max_abs() < 1e-15);
                 n += 1;
             }
@@ -88,7 +92,9 @@ fn kinds_take_turns_and_k_runs_fastest() {
 
 #[test]
 fn seeds_follow_the_place_unless_a_lattice_has_its_own() {
-    let one = |seed: &str| format!("[[lattice]]\ncount = [1, 1, 1]\n{seed}body = [ {{ shape = {{ kind = 'sphere', radius = 0.1 }} }} ]\n");
+    let one = |seed: &str| {
+        format!("[[lattice]]\ncount = [1, 1, 1]\n{seed}body = [ {{ shape = {{ kind = 'sphere', radius = 0.1 }} }} ]\n")
+    };
     let velocity = |text: &str, n: usize| rows(&build(text))[n].1;
     let scene = |seed: u64, lattices: &[&str]| {
         format!("format = 1\n[simulation]\nseed = {seed}\n{}", lattices.iter().map(|s| one(s)).collect::<String>())

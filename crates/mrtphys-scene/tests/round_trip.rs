@@ -102,7 +102,12 @@ max = [100, 100, 100]
     loaded.world.set_surface(a, surface).expect("set");
     loaded.world.set_mass(c, Mass::Infinite).expect("set");
     loaded.world.remove_body(b).expect("removed");
-    let settings = mrtphys::Settings { fps: 100, friction_law: FrictionLaw::Velocity, viscosity: 0.25, ..loaded.world.settings().clone() };
+    let settings = mrtphys::Settings {
+        fps: 100,
+        friction_law: FrictionLaw::Velocity,
+        viscosity: 0.25,
+        ..loaded.world.settings().clone()
+    };
     loaded.world.set_settings(settings.clone()).expect("set");
     for &wall in &loaded.names.boundaries()[2..4] {
         loaded.world.set_boundary_surface(wall, surface).expect("set");
@@ -127,7 +132,11 @@ max = [100, 100, 100]
     assert_eq!(again.world.forces()[0].scope.only.as_ref().map(|o| o.len()), Some(1));
     let walls = |l: &Loaded| -> Vec<_> {
         let view = |&id| l.world.boundary(id).expect("a wall");
-        l.names.boundaries().iter().map(|id| (l.names.boundary_name(*id).map(String::from), view(id).surface, view(id).position)).collect()
+        l.names
+            .boundaries()
+            .iter()
+            .map(|id| (l.names.boundary_name(*id).map(String::from), view(id).surface, view(id).position))
+            .collect()
     };
     assert_eq!(walls(&loaded), walls(&again));
 }
@@ -135,7 +144,9 @@ max = [100, 100, 100]
 #[test]
 fn texts_of_any_kind_survive() {
     let title = "quotes \" and ' and \\, tab \t, line \n, euro €, \u{7f}";
-    let mut loaded = build("format = 1\n[material.'a \"b\"']\nfriction = 0.25\n[[body]]\nname = \"o'b \\\" \\\\ ü\"\nshape = { kind = 'sphere', radius = 1 }\nmaterial = 'a \"b\"'\n");
+    let mut loaded = build(
+        "format = 1\n[material.'a \"b\"']\nfriction = 0.25\n[[body]]\nname = \"o'b \\\" \\\\ ü\"\nshape = { kind = 'sphere', radius = 1 }\nmaterial = 'a \"b\"'\n",
+    );
     loaded.scene.title = title.into();
     let again = build(&write(&loaded));
     assert_eq!(again.scene.title, title);

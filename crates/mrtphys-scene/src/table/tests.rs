@@ -15,9 +15,8 @@ impl Folder {
 
     fn read(&self, file: &str, contents: &[u8]) -> Result<Scene, Diagnostics> {
         std::fs::write(self.0.join(file), contents).expect("written");
-        let text = format!(
-            "format = 1\n[material.steel]\ndensity = 8000\n[[body_table]]\nname = 'swarm'\nfile = '{file}'\n"
-        );
+        let text =
+            format!("format = 1\n[material.steel]\ndensity = 8000\n[[body_table]]\nname = 'swarm'\nfile = '{file}'\n");
         std::fs::write(self.0.join("scene.toml"), text).expect("written");
         Scene::load(&self.0.join("scene.toml"))
     }
@@ -114,7 +113,10 @@ fn wrong_csv_is_answered_with_line_and_column() {
     assert_eq!(row("b,0,nan,0,sphere,1,"), "swarm.csv:3:5: py: 'nan' is not a finite number");
     assert_eq!(row("b,0,1e999,0,sphere,1,"), "swarm.csv:3:5: py: '1e999' is not a finite number");
     assert_eq!(row("b,0,,0,sphere,1,"), "swarm.csv:3:5: py is missing");
-    assert_eq!(row("\"ä,ö\",0,0,0,cube,1,"), "swarm.csv:3:13: kind: unknown value 'cube'; known are sphere, tetrahedron");
+    assert_eq!(
+        row("\"ä,ö\",0,0,0,cube,1,"),
+        "swarm.csv:3:13: kind: unknown value 'cube'; known are sphere, tetrahedron"
+    );
     assert_eq!(row("b,0,0,0,sphere,-1,"), "swarm.csv:3:1: radius = -1.0 is out of range: a size from 1e-50 to 1e50 m");
     assert_eq!(row("b,0,0,0,sphere,1,gold"), "swarm.csv:3:18: material: there is no material 'gold'");
     assert_eq!(row("\"b,0,0,0,sphere,1,"), "swarm.csv:3:1: a quoted field is not closed");
