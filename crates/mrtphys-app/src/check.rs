@@ -1,0 +1,2 @@
+//! check
+pub fn check(_scene: &std::ffi::OsStr) -> crate::exit::Outcome { todo!() }
