@@ -1,2 +1,8 @@
-//! Benchmarks.
-fn main() {}
+//! `mrtphys-bench`: the benchmarks as a program of its own.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    mrtphys_bench::command::run(&args)
+}

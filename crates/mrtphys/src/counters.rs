@@ -11,6 +11,8 @@ pub struct Counters {
     pub contacts: u64,
     /// contacts that were answered with an impulse
     pub impacts: u64,
+    /// those of them against a boundary
+    pub wall_impacts: u64,
     /// impacts whose friction law would have left the pair approaching, so that the frictionless law answered
     pub fallbacks: u64,
     /// contacts whose overlap was projected out
@@ -27,6 +29,7 @@ impl std::ops::AddAssign for Counters {
         self.detect_calls += o.detect_calls;
         self.contacts += o.contacts;
         self.impacts += o.impacts;
+        self.wall_impacts += o.wall_impacts;
         self.fallbacks += o.fallbacks;
         self.projections += o.projections;
         self.undecided += o.undecided;

@@ -46,14 +46,16 @@ pub(super) fn answer_one(
     let surface = pairs.of(contact);
     if surface.smooth_spheres && !recipe.record_events {
         if surface.restitution == 1.0 {
-            work.counters.impacts += u64::from(bounce_smooth(state, contact));
+            if bounce_smooth(state, contact) {
+                count(work, contact);
+            }
             return;
         }
     }
     let Some(encounter) = encounter(recipe, state, &work.accelerations, contact, surface) else { return };
     let Some(response) = super::sequential::respond(&encounter, recipe.law) else { return };
     push(state, contact, response.impulse_on_a);
-    work.counters.impacts += 1;
+    count(work, contact);
     work.counters.fallbacks += u64::from(response.fallback);
     ledger.friction += response.friction_change;
     ledger.restitution += response.restitution_change;
@@ -68,6 +70,12 @@ pub(super) fn answer_one(
             energy_change: response.energy_change,
         });
     }
+}
+
+/// Counts an impact.
+pub(super) fn count(work: &mut Work, contact: &Contact) {
+    work.counters.impacts += 1;
+    work.counters.wall_impacts += u64::from(matches!(contact.b, Other::Wall(_)));
 }
 
 /// Elastic impact of two spheres, or of a sphere and what never moves, without friction: the impulse goes through both

@@ -1,6 +1,6 @@
 //! Simultaneous impacts: contacts that hang together through bodies that can move are answered at once.
 
-use super::answer::{PairSurfaces, answer_one, encounter};
+use super::answer::{PairSurfaces, answer_one, count, encounter};
 use super::reflection::{Group, GroupBody, GroupContact, reflect};
 use crate::contact::collect::manifold;
 use crate::contact::{Contact, Other};
@@ -121,7 +121,7 @@ fn reflect_group(
             continue;
         }
         let contact = contacts[index];
-        work.counters.impacts += 1;
+        count(work, contact);
         let impulse = contact.normal * -size;
         turn(state, &table, entry.a, entry.ra, impulse);
         turn(state, &table, entry.b, entry.rb, -impulse);

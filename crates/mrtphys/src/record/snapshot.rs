@@ -140,7 +140,7 @@ fn read_books(input: &mut Reader<'_>) -> Result<Books> {
         user: e[7],
         created_removed: e[8],
     };
-    let mut c = [0; 8];
+    let mut c = [0; 9];
     for count in &mut c {
         *count = input.word()?;
     }
@@ -149,10 +149,11 @@ fn read_books(input: &mut Reader<'_>) -> Result<Books> {
         detect_calls: c[1],
         contacts: c[2],
         impacts: c[3],
-        fallbacks: c[4],
-        projections: c[5],
-        undecided: c[6],
-        quarantined: c[7],
+        wall_impacts: c[4],
+        fallbacks: c[5],
+        projections: c[6],
+        undecided: c[7],
+        quarantined: c[8],
     };
     let known = input.word()? == 1;
     let initial = Energy { linear: input.real()?, rotational: input.real()?, potential: input.real()? };

@@ -1,0 +1,130 @@
+//! The gases that are measured: n^3 bodies of radius 0.23/n on a jittered lattice in the unit cube, speeds of 1 m/s, numbered
+//! in shuffled order so that no broad phase profits from the lattice.
+
+use mrtphys::shape::{Polyhedron, Shape, Sphere};
+use mrtphys::{BodyDef, BroadPhaseKind, Result, Settings, Surface, Vec3, World};
+use std::sync::Arc;
+
+/// Shape of the bodies of a gas.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GasShape {
+    /// spheres
+    Spheres,
+    /// regular tetrahedra with the same circumradius
+    Tetrahedra,
+}
+
+/// A gas.
+#[derive(Clone, Copy, Debug)]
+pub struct GasSpec {
+    /// shape
+    pub shape: GasShape,
+    /// bodies along an edge
+    pub n: u32,
+    /// steps per second
+    pub rate: u32,
+    /// broad phase
+    pub broad_phase: BroadPhaseKind,
+}
+
+/// Radius times n.
+const RADIUS: f64 = 0.23;
+
+impl GasSpec {
+    /// Name, as on the command line: `spheres-16`.
+    pub fn name(&self) -> String {
+        let shape = match self.shape {
+            GasShape::Spheres => "spheres",
+            GasShape::Tetrahedra => "tetrahedra",
+        };
+        format!("{shape}-{}", self.n)
+    }
+
+    /// Radius of the bounding sphere \[m\].
+    pub fn radius(&self) -> f64 {
+        RADIUS / f64::from(self.n)
+    }
+
+    /// Number of bodies.
+    pub fn bodies(&self) -> usize {
+        (self.n as usize).pow(3)
+    }
+
+    /// Makes the world.
+    ///
+    /// # Errors
+    /// None for a specification with n and rate above 0.
+    pub fn build(&self) -> Result<World> {
+        let settings =
+            Settings { fps: self.rate, steps_per_frame: 1, broad_phase: self.broad_phase, ..Settings::default() };
+        let mut world = World::new(settings)?;
+        world.add_box("box", Vec3::ZERO, Vec3::splat(1.0), Surface::default())?;
+        let shape: Arc<dyn Shape> = match self.shape {
+            GasShape::Spheres => Arc::new(Sphere::new(self.radius())?),
+            GasShape::Tetrahedra => Arc::new(Polyhedron::tetrahedron(self.radius())?),
+        };
+        let mut random = Random(0x6d72_7470_6879_7321);
+        let mut places: Vec<u32> = (0..self.n.pow(3)).collect();
+        for i in (1..places.len()).rev() {
+            places.swap(i, random.below(i as u64 + 1) as usize);
+        }
+        let cell = 1.0 / f64::from(self.n);
+        let free = 0.5 * cell - self.radius();
+        for place in places {
+            let at = |k: u32| (f64::from(k % self.n) + 0.5) * cell;
+            let lattice = Vec3::new(at(place / (self.n * self.n)), at(place / self.n), at(place));
+            let jitter = Vec3::new(random.signed(), random.signed(), random.signed()) * (0.9 * free);
+            world.add_body(BodyDef {
+                position: lattice + jitter,
+                velocity: random.direction(),
+                ..BodyDef::new(shape.clone())
+            })?;
+        }
+        Ok(world)
+    }
+
+    /// Collisions per second of a gas of hard spheres of this density and temperature in bulk, kinetic theory with Enskog's
+    /// factor: N w / 2 with w = 4 n sigma^2 g sqrt(pi kT/m), g = (1 - eta/2)/(1 - eta)^3 (Carnahan and Starling 1969). The
+    /// centres of N spheres share the cube less a skin of one radius along the walls; the density used is that of the cube.
+    /// `mean_square_speed` \[m2/s2\] = 3 kT/m.
+    pub fn collisions_per_second(&self, mean_square_speed: f64) -> f64 {
+        let bodies = self.bodies() as f64;
+        let sigma = 2.0 * self.radius();
+        let eta = bodies * std::f64::consts::PI / 6.0 * sigma.powi(3);
+        let g = (1.0 - 0.5 * eta) / (1.0 - eta).powi(3);
+        let w = 4.0 * bodies * sigma * sigma * g * (std::f64::consts::PI * mean_square_speed / 3.0).sqrt();
+        0.5 * bodies * w
+    }
+}
+
+/// SplitMix64 (Steele, Lea, Flood 2014): the same numbers on every machine.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, n: u64) -> u64 {
+        ((u128::from(self.next()) * u128::from(n)) >> 64) as u64
+    }
+
+    /// Uniform in [-1, 1).
+    fn signed(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    /// Uniform on the unit sphere.
+    fn direction(&mut self) -> Vec3 {
+        loop {
+            let v = Vec3::new(self.signed(), self.signed(), self.signed());
+            if (0.01..=1.0).contains(&v.length_squared()) {
+                return v / v.length();
+            }
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! The broad phase made for speed: bodies are counting-sorted into cells a little larger than the largest diameter, so that
+//! a body's partners are in its own cell and the 26 round it; half of them are looked at, as five runs of neighbouring cells
+//! in sorted order. Bodies of very different size go to levels of their own, one per factor of four in radius. Where the
+//! cells of the scene's box would be many more than the bodies, only occupied cells are kept, sorted by their coordinates:
+//! no hash, so no input makes it slow.
+//!
+//! (Counting-sorted cell lists: algorithms of molecular dynamics, e.g. Rapaport 2004, section 3.4. Hierarchical grids:
+//! Ericson 2005, section 7.2.)
+
+mod cells;
+mod dense;
+mod sparse;
+mod walls;
+
+use super::{BoundsView, BroadPhase, Candidates, Cell};
+use crate::bounds::{Aabb, Ball};
+use crate::math::{Real, max, min};
+use crate::par;
+use cells::Frame;
+use dense::Dense;
+use sparse::Sparse;
+
+/// Radii within a level differ at most by this factor.
+const LEVEL_RATIO: Real = 4.0;
+/// Cells per body up to which all cells of the scene's box are kept.
+const DENSE_CELLS_PER_BODY: usize = 16;
+/// Cells that are always affordable.
+const DENSE_CELLS_MIN: usize = 4096;
+/// Sorted bodies in a block of the pair scan.
+const SCAN_BLOCK: usize = 2048;
+
+/// Counting-sorted cells, see the module's text.
+#[derive(Clone, Debug, Default)]
+pub struct SortedGrid {
+    levels: Vec<Level>,
+    outputs: Vec<Found>,
+}
+
+/// Bodies of similar radius.
+#[derive(Clone, Debug, Default)]
+struct Level {
+    /// slots of its bodies; unused where one level holds all
+    members: Vec<u32>,
+    largest: Real,
+    index: Index,
+}
+
+#[derive(Clone, Debug)]
+enum Index {
+    Dense(Dense),
+    Sparse(Sparse),
+}
+
+impl Default for Index {
+    fn default() -> Index {
+        Index::Dense(Dense::default())
+    }
+}
+
+/// Pairs found by one block of the scan.
+#[derive(Clone, Debug, Default)]
+struct Found {
+    pairs: Vec<[u32; 2]>,
+    tests: u64,
+}
+
+impl BroadPhase for SortedGrid {
+    fn name(&self) -> String {
+        "sorted-grid".into()
+    }
+
+    fn find(&mut self, view: &BoundsView<'_>, out: &mut Candidates) {
+        self.build(view);
+        for level in 0..self.levels.len() {
+            self.scan_level(level, view, out);
+            for coarser in 0..level {
+                self.scan_across(level, coarser, view, out);
+            }
+        }
+        walls::find(view, out);
+    }
+
+    fn cells(&self) -> Vec<Cell> {
+        let mut out = Vec::new();
+        for (depth, level) in self.levels.iter().enumerate() {
+            match &level.index {
+                Index::Dense(d) => d.cells(depth as u32, &mut out),
+                Index::Sparse(s) => s.cells(depth as u32, &mut out),
+            }
+        }
+        out
+    }
+}
+
+impl SortedGrid {
+    /// Sorts all bodies into levels, coarsest first, and each level into cells.
+    fn build(&mut self, view: &BoundsView<'_>) {
+        let Some(extent) = Extent::of(view.balls) else { return self.levels.clear() };
+        if extent.smallest * LEVEL_RATIO >= extent.largest && extent.count == view.balls.len() {
+            self.levels.resize_with(1, Level::default);
+            self.levels[0].largest = extent.largest;
+            self.levels[0].index.rebuild(&extent, None, view.balls);
+            return;
+        }
+        self.levels.clear();
+        let mut order: Vec<u32> =
+            (0..view.balls.len() as u32).filter(|&i| !view.balls[i as usize].is_empty()).collect();
+        order.sort_by(|&a, &b| view.balls[b as usize].radius.total_cmp(&view.balls[a as usize].radius));
+        let mut rest = &order[..];
+        while let Some(&first) = rest.first() {
+            let largest = view.balls[first as usize].radius;
+            let count = rest.partition_point(|&i| view.balls[i as usize].radius * LEVEL_RATIO >= largest);
+            let members = rest[..count.max(1)].to_vec();
+            rest = &rest[members.len()..];
+            let mut level = Level { members, largest, index: Index::default() };
+            if let Some(extent) = Extent::of_members(view.balls, &level.members) {
+                level.index.rebuild(&extent, Some(&level.members), view.balls);
+            }
+            self.levels.push(level);
+        }
+    }
+
+    /// Pairs within a level.
+    fn scan_level(&mut self, level: usize, view: &BoundsView<'_>, out: &mut Candidates) {
+        let index = &self.levels[level].index;
+        let scan = |first: usize, last: usize, found: &mut Found| match index {
+            Index::Dense(d) => d.scan(first, last, view, found),
+            Index::Sparse(s) => s.scan(first, last, view, found),
+        };
+        run_blocks(&mut self.outputs, index.len(), out, scan);
+    }
+
+    /// Pairs of a body of this level with one of a coarser level.
+    fn scan_across(&mut self, level: usize, coarser: usize, view: &BoundsView<'_>, out: &mut Candidates) {
+        let index = &self.levels[coarser].index;
+        let members = &self.levels[level].members;
+        let scan = |first: usize, last: usize, found: &mut Found| {
+            for &slot in &members[first..last] {
+                match index {
+                    Index::Dense(d) => d.query(slot, view, found),
+                    Index::Sparse(s) => s.query(slot, view, found),
+                }
+            }
+        };
+        run_blocks(&mut self.outputs, members.len(), out, scan);
+    }
+}
+
+/// Runs a scan over blocks and puts their pairs together in the order of the blocks.
+fn run_blocks(
+    outputs: &mut Vec<Found>,
+    count: usize,
+    out: &mut Candidates,
+    scan: impl Fn(usize, usize, &mut Found) + Sync,
+) {
+    let blocks: Vec<usize> = (0..count.div_ceil(SCAN_BLOCK)).collect();
+    let used = par::blocks_into(&blocks, 1, outputs, |block, found| {
+        found.pairs.clear();
+        found.tests = 0;
+        let first = block[0] * SCAN_BLOCK;
+        scan(first, (first + SCAN_BLOCK).min(count), found);
+    });
+    for found in &mut outputs[..used] {
+        out.pairs.extend_from_slice(&found.pairs);
+        out.sphere_tests += found.tests;
+    }
+}
+
+impl Index {
+    fn len(&self) -> usize {
+        match self {
+            Index::Dense(d) => d.len(),
+            Index::Sparse(s) => s.len(),
+        }
+    }
+
+    fn rebuild(&mut self, extent: &Extent, members: Option<&[u32]>, balls: &[Ball]) {
+        let frame = Frame::new(extent, members, balls);
+        let affordable = DENSE_CELLS_MIN.max(DENSE_CELLS_PER_BODY * extent.count);
+        if frame.cells_within(affordable) {
+            if !matches!(self, Index::Dense(_)) {
+                *self = Index::default();
+            }
+            if let Index::Dense(d) = self {
+                d.rebuild(frame, members, balls);
+            }
+        } else {
+            if !matches!(self, Index::Sparse(_)) {
+                *self = Index::Sparse(Sparse::default());
+            }
+            if let Index::Sparse(s) = self {
+                s.rebuild(frame, members, balls);
+            }
+        }
+    }
+}
+
+/// Box of the centres and range of the radii of some bodies.
+#[derive(Clone, Copy, Debug)]
+struct Extent {
+    centers: Aabb,
+    smallest: Real,
+    largest: Real,
+    count: usize,
+}
+
+impl Extent {
+    const NONE: Extent = Extent { centers: Aabb::EMPTY, smallest: Real::INFINITY, largest: 0.0, count: 0 };
+
+    fn add(&mut self, ball: &Ball) {
+        if !ball.is_empty() {
+            self.centers.min = self.centers.min.min(ball.center);
+            self.centers.max = self.centers.max.max(ball.center);
+            self.smallest = min(self.smallest, ball.radius);
+            self.largest = max(self.largest, ball.radius);
+            self.count += 1;
+        }
+    }
+
+    fn of(balls: &[Ball]) -> Option<Extent> {
+        let mut extent = Extent::NONE;
+        balls.iter().for_each(|b| extent.add(b));
+        (extent.count > 0).then_some(extent)
+    }
+
+    fn of_members(balls: &[Ball], members: &[u32]) -> Option<Extent> {
+        let mut extent = Extent::NONE;
+        members.iter().for_each(|&i| extent.add(&balls[i as usize]));
+        (extent.count > 0).then_some(extent)
+    }
+}
+
+/// Reports a pair if the two balls meet and not both bodies are fixed.
+#[inline(always)]
+fn test(a: u32, ball_a: &Ball, b: u32, ball_b: &Ball, view: &BoundsView<'_>, found: &mut Found) {
+    let d = ball_a.center - ball_b.center;
+    let r = ball_a.radius + ball_b.radius;
+    if d.length_squared() <= r * r && !(view.is_fixed(a) && view.is_fixed(b)) {
+        found.pairs.push([a, b]);
+    }
+}
