@@ -96,7 +96,8 @@ impl Cast {
             let bodies = self.body_names().enumerate().map(|(i, n)| (Party::Body(i), n));
             bodies.chain(self.boundary_names().enumerate().map(|(i, n)| (Party::Boundary(i), n)))
         };
-        let belongs = |n: &str| n.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with(['[', '.']));
+        let belongs =
+            |n: &str| n.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with(['[', '.']));
         let found: Vec<Party> = parties().filter(|(_, n)| belongs(n)).map(|(p, _)| p).collect();
         if found.is_empty() {
             let meant = closest(name, parties().map(|(_, n)| n));

@@ -12,7 +12,7 @@ use std::process::ExitCode;
 
 /// Rigid bodies that collide as physics says.
 #[derive(Parser, Debug)]
-#[command(name = "mrtphys", version = version(), disable_help_subcommand = true)]
+#[command(name = "mrtphys", version = version())]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -87,7 +87,8 @@ pub struct RunArgs {
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1024))]
     pub threads: u32,
     /// Seed of the scene's random draws
-    #[arg(long, value_name = "N")]
+    // What a scene text can say too: TOML has signed numbers.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
     pub seed: Option<u64>,
     /// Write the final state, energies and counters (JSON, or records with the ending .bin)
     #[arg(long, value_name = "FILE")]
@@ -163,12 +164,14 @@ fn dispatch(cli: Cli) -> Outcome {
     match cli.command {
         None => Err(Failure::not_yet("the interactive testbed", instead)),
         Some(Command::View(_)) => Err(Failure::not_yet("'view'", instead)),
-        Some(Command::Render(_)) => {
-            Err(Failure::not_yet("'render'", "'mrtphys run SCENE --trajectory FILE.csv' writes every body at every frame"))
-        }
-        Some(Command::Experiment(_)) => {
-            Err(Failure::not_yet("'experiment'", "'mrtphys run SCENE --broad-phase NAME --report FILE.json' counts one case"))
-        }
+        Some(Command::Render(_)) => Err(Failure::not_yet(
+            "'render'",
+            "'mrtphys run SCENE --trajectory FILE.csv' writes every body at every frame",
+        )),
+        Some(Command::Experiment(_)) => Err(Failure::not_yet(
+            "'experiment'",
+            "'mrtphys run SCENE --broad-phase NAME --report FILE.json' counts one case",
+        )),
         Some(Command::Validate(_)) => {
             Err(Failure::not_yet("'validate'", "'mrtphys run SCENE --report FILE.json' shows where the energy went"))
         }

@@ -69,7 +69,8 @@ impl Whole {
         let tried = match whole.place() {
             Place::Device => OpenOptions::new().write(true).open(path).map(drop),
             Place::File(place) => {
-                let present = if place.exists() { OpenOptions::new().append(true).open(&place).map(drop) } else { Ok(()) };
+                let present =
+                    if place.exists() { OpenOptions::new().append(true).open(&place).map(drop) } else { Ok(()) };
                 present.and_then(|()| {
                     let part = part_of(&place)?;
                     File::create_new(&part)?;
@@ -84,7 +85,9 @@ impl Whole {
     /// Writes the file.
     pub fn write(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Outcome {
         let written = match self.place() {
-            Place::Device => OpenOptions::new().write(true).open(&self.path).and_then(|file| fill(file, write).map(drop)),
+            Place::Device => {
+                OpenOptions::new().write(true).open(&self.path).and_then(|file| fill(file, write).map(drop))
+            }
             Place::File(place) => part_of(&place).and_then(|part| {
                 let done = File::create_new(&part)
                     .and_then(|file| fill(file, write))

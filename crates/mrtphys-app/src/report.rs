@@ -9,8 +9,8 @@ use crate::trajectory::motion;
 use mrtphys::ledger::{Energy, Ledger};
 use mrtphys::world::Body;
 use mrtphys::{Vec3, World};
-use serde::ser::{Error as _, SerializeMap, Serializer};
 use serde::Serialize;
+use serde::ser::{Error as _, SerializeMap, Serializer};
 use std::io::Write;
 use std::path::Path;
 

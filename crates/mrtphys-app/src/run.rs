@@ -4,6 +4,7 @@ use crate::cast::Cast;
 use crate::cli::RunArgs;
 use crate::events::Events;
 use crate::exit::{Failure, Outcome, warn};
+use crate::interrupt;
 use crate::output::{Format, Whole, check_distinct, say};
 use crate::plan::{Beat, Length, Plan, frames_behind};
 use crate::progress::Progress;
@@ -11,7 +12,6 @@ use crate::report::{self, Ending, Facts};
 use crate::setup::{self, Ready};
 use crate::summary::{self, Scale};
 use crate::trajectory::Trajectory;
-use crate::interrupt;
 use mrtphys::World;
 use std::path::Path;
 

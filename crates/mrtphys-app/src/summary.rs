@@ -155,7 +155,11 @@ pub fn warnings(world: &World, scale: &Scale) {
     let (residual, bound) = (residual(world), scale.bound(world));
     // Written so that a residual that is no number is one too many.
     if !(residual.abs() <= bound) {
-        warn(&format!("the ledger leaves {} J unexplained, more than its bound of {} J", brief(residual), brief(bound)));
+        warn(&format!(
+            "the ledger leaves {} J unexplained, more than its bound of {} J",
+            brief(residual),
+            brief(bound)
+        ));
     }
 }
 
@@ -171,7 +175,10 @@ mod tests {
 
     #[test]
     fn a_change_is_relative() {
-        assert_eq!([change(2.0, 1.0), change(-2.0, -1.0), change(0.0, 1.0), change(3.0, 3.0)], ["-5.00e-1", "+5.00e-1", "-", "0"]);
+        assert_eq!(
+            [change(2.0, 1.0), change(-2.0, -1.0), change(0.0, 1.0), change(3.0, 3.0)],
+            ["-5.00e-1", "+5.00e-1", "-", "0"]
+        );
     }
 
     #[test]

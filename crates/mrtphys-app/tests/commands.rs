@@ -30,7 +30,11 @@ fn what_is_not_in_this_version_is_refused_by_name() {
 #[test]
 fn wrong_options_end_with_1_and_list_the_choices() {
     let folder = Folder::with_scenes("wrong");
-    folder.run("run gas.toml --broad-phase sortedgrid").refused(&["--broad-phase", "brute-force", "did you mean 'sorted-grid'"]);
+    folder.run("run gas.toml --broad-phase sortedgrid").refused(&[
+        "--broad-phase",
+        "brute-force",
+        "did you mean 'sorted-grid'",
+    ]);
     folder.run("run gas.toml --friction-law coulom").refused(&["kurtenbach-literal", "did you mean 'coulomb'"]);
     folder.run("run gas.toml --impact all").refused(&["sequential", "reflection"]);
     folder.run("run gas.toml --broad-phase regular-grid:0").refused(&["1 to 1024"]);

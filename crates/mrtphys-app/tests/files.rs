@@ -177,7 +177,11 @@ fn what_cannot_be_written_is_told_before_the_simulation() {
         folder.run(&format!("{long} {option} .")).refused(&["'.'"]);
         folder.run(&format!("{long} {option} gas.toml")).refused(&[option, "the scene", "same file"]);
     }
-    folder.run(&format!("{long} --events x.csv --trajectory ./x.csv")).refused(&["--events", "--trajectory", "same file"]);
+    folder.run(&format!("{long} --events x.csv --trajectory ./x.csv")).refused(&[
+        "--events",
+        "--trajectory",
+        "same file",
+    ]);
     assert_eq!(folder.text("gas.toml"), common::GAS);
     // An output that is fine is not emptied because another is not.
     folder.put("old.json", "{}");

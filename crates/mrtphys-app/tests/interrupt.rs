@@ -29,7 +29,8 @@ fn interrupted(folder: &Folder, args: &str, signal: &str) -> Done {
 #[test]
 fn an_interrupted_run_keeps_everything_and_can_be_gone_on_from() {
     let folder = Folder::with_scenes("interrupt");
-    let args = "run gas.toml --quiet --seconds 1000000 --events e.csv --trajectory t.csv --report r.json --snapshot s.snap";
+    let args =
+        "run gas.toml --quiet --seconds 1000000 --events e.csv --trajectory t.csv --report r.json --snapshot s.snap";
     for signal in ["-INT", "-TERM"] {
         let done = interrupted(&folder, args, signal).expect(130);
         assert!(done.out.contains("interrupted"), "{}", done.out);

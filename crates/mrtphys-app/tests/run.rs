@@ -48,7 +48,8 @@ fn a_report_has_the_members_of_the_contract_in_its_order() {
     let energies = ["linear", "rotational", "potential", "total"];
     assert_eq!(keys(&r["energy"]), energies);
     assert_eq!(keys(&r["initial_energy"]), energies);
-    let ledger = "friction restitution drag work_of_fields position_correction integration moving_bodies user created_removed";
+    let ledger =
+        "friction restitution drag work_of_fields position_correction integration moving_bodies user created_removed";
     assert_eq!(keys(&r["ledger"]), ledger.split(' ').collect::<Vec<_>>());
     assert_eq!(&keys(&r["counters"])[..5], ["sphere_tests", "detect_calls", "impacts", "undecided", "missed"]);
     assert!(r["counters"]["missed"].is_null());
@@ -182,7 +183,16 @@ fn the_summary_says_what_happened_and_quiet_is_quiet() {
     let done = folder.run("run rain.toml --quiet --report r.json").expect(0);
     assert_eq!(done.err, "");
     let hash = folder.json("r.json")["state_hash"].as_str().unwrap().to_string();
-    for part in ["rain.toml", "1 s in 60 frames, 480 steps", "linear", "restitution", "unexplained", "momentum", "steps/s", &hash] {
+    for part in [
+        "rain.toml",
+        "1 s in 60 frames, 480 steps",
+        "linear",
+        "restitution",
+        "unexplained",
+        "momentum",
+        "steps/s",
+        &hash,
+    ] {
         assert!(done.out.contains(part), "'{part}' is not in:\n{}", done.out);
     }
     assert!(!done.out.contains("drag"), "lines of the ledger that are zero are left out:\n{}", done.out);
