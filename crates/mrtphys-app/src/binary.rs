@@ -15,7 +15,7 @@ pub const REPORT: &[u8; 8] = b"MRTPREPT";
 
 /// Writes the header and the table of names: of the bodies, then of the boundaries.
 pub fn header(to: &mut dyn Write, magic: &[u8; 8], record_bytes: u32, cast: &Cast) -> io::Result<()> {
-    let names = || cast.body_names().chain(cast.boundary_names());
+    let names = || cast.parties().map(|p| cast.name(p));
     // Records start at a multiple of eight bytes, so that a mapped file can be read in place.
     let table: u64 = names().map(|n| 4 + n.len() as u64).sum();
     let padding = table.next_multiple_of(8) - table;

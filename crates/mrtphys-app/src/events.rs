@@ -69,7 +69,7 @@ impl Chosen {
         let mut chosen =
             Chosen { bodies: vec![false; cast.body_count()], boundaries: vec![false; cast.boundary_count()] };
         for name in split_names(list) {
-            for party in cast.find(name)? {
+            for party in cast.find_for("--events-only", name)? {
                 match party {
                     Party::Body(i) => chosen.bodies[i] = true,
                     Party::Boundary(i) => chosen.boundaries[i] = true,

@@ -6,7 +6,7 @@ use crate::cli::RunArgs;
 use crate::exit::{Failure, Outcome};
 use crate::plan::End;
 use mrtphys::World;
-use mrtphys_scene::{Loaded, Scene, gallery};
+use mrtphys_scene::{Scene, gallery};
 use std::ffi::OsStr;
 use std::path::Path;
 
@@ -47,13 +47,7 @@ pub fn load(name: &OsStr) -> Outcome<Scene> {
 /// Makes a scene's world.
 pub fn build(scene: &Scene) -> Outcome<(World, Cast)> {
     let loaded = scene.build().map_err(|e| Failure::Wrong(e.to_string()))?;
-    Ok(split(loaded))
-}
-
-fn split(loaded: Loaded) -> (World, Cast) {
-    let Loaded { world, names, .. } = loaded;
-    let cast = Cast::new(&world, names);
-    (world, cast)
+    Ok((loaded.world, Cast::new(loaded.names)))
 }
 
 /// Reads the scene, applies the options, makes the world, and takes up a snapshot.
