@@ -6,7 +6,8 @@ use crate::output::say;
 use crate::setup;
 use crate::summary::LARGEST_SAFE_STEP;
 use mrtphys::{Vec3, World};
-use mrtphys_scene::{Content, MassDesc, Scene, Turning};
+use mrtphys_scene::Scene;
+use mrtphys_scene::scene::{Content, MassDesc, Turning};
 use std::ffi::OsStr;
 use std::fmt::Write;
 
