@@ -168,7 +168,9 @@ fn many_bodies_come_and_go() {
     let mut w = world();
     let shape: Arc<dyn mrtphys::shape::Shape> = Arc::new(Sphere::new(0.1).unwrap());
     let ids: Vec<_> = (0..100_000)
-        .map(|i| w.add_body(BodyDef { position: Vec3::new(f64::from(i), 0.0, 0.0), ..BodyDef::new(shape.clone()) }).unwrap())
+        .map(|i| {
+            w.add_body(BodyDef { position: Vec3::new(f64::from(i), 0.0, 0.0), ..BodyDef::new(shape.clone()) }).unwrap()
+        })
         .collect();
     w.step().unwrap();
     ids.iter().rev().for_each(|&id| w.remove_body(id).unwrap());

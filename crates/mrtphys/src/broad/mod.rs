@@ -1,11 +1,15 @@
 //! Stage 3: candidate pairs. Contract: every pair of bodies whose bounding spheres meet, and every body with every boundary
-//! whose bounds it reaches, exactly once, in any order. The caller sorts contacts, so the choice of the broad phase changes
-//! the speed and never the trajectory.
+//! whose bounds it reaches, exactly once, in any order. A broad phase that works with boxes (the thesis's two) may leave out
+//! a pair whose bounding spheres meet although its boxes do not: a body whose box is clear of a limit's face and that does
+//! not reach behind it, two bodies with boxes tighter than their spheres. No pair routine calls those a contact, and the
+//! thesis's own counts differ between its methods for this reason (figure 6). The caller sorts contacts, so the choice of
+//! the broad phase changes the speed and never the trajectory.
 
 pub mod brute_force;
 pub mod regular_grid;
 pub mod adaptive_tree;
 pub mod sorted_grid;
+mod scene;
 
 pub use adaptive_tree::AdaptiveTree;
 pub use brute_force::BruteForce;

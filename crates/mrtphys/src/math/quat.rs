@@ -111,7 +111,7 @@ impl Quat {
     pub fn try_normalize(self) -> Option<Quat> {
         let v = Vec3::new(self.x, self.y, self.z);
         let largest = super::max(v.max_abs(), self.w.abs());
-        if !(largest > 0.0) || !self.is_finite() {
+        if largest == 0.0 || !self.is_finite() {
             return None;
         }
         let q = Quat::new(self.x / largest, self.y / largest, self.z / largest, self.w / largest);
