@@ -26,6 +26,7 @@ enum Command {
     /// The testbed on one scene (not in this version)
     View(Later),
     /// Simulate without a window: progress on stderr, summary on stdout
+    #[command(allow_negative_numbers = true)]
     Run(Box<RunArgs>),
     /// Pictures without a window (not in this version)
     Render(Later),
@@ -60,7 +61,7 @@ pub struct RunArgs {
     /// A scene file, or the name of a gallery scene
     pub scene: OsString,
     /// Run to this simulated time [s] (default: the scene's own, else 10)
-    #[arg(long, value_name = "S", value_parser = seconds, conflicts_with = "frames", allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", value_parser = seconds, conflicts_with = "frames")]
     pub seconds: Option<f64>,
     /// Run to the end of this frame
     #[arg(long, value_name = "N")]
