@@ -50,7 +50,7 @@ fn wrong_options_end_with_1_and_list_the_choices() {
     folder.run("run gas.toml --threads 100000").refused(&["--threads"]);
     folder.run("run gas.toml --events-only x").refused(&["--events"]);
     folder.run("run").refused(&["SCENE"]);
-    folder.run("rnu gas.toml").refused(&["rnu", "run"]);
+    folder.run("chek gas.toml").refused(&["chek", "check"]);
 }
 
 #[test]
