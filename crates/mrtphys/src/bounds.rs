@@ -114,14 +114,21 @@ impl BoundaryBounds {
         self.reaches_behind(body)
     }
 
-    /// Whether the body reaches behind the face.
+    /// Whether the body reaches behind the face, or may do so as far as rounding can tell: pair routines compute the same
+    /// distance in another order, and every broad phase must ask about every contact they can find.
     #[inline]
     pub fn reaches_behind(&self, body: &Ball) -> bool {
         match self.behind {
-            Some((normal, offset)) => normal.dot(body.center) - offset <= body.radius,
+            Some((normal, offset)) => normal.dot(body.center) - offset <= body.radius + rounding_of(body, offset),
             None => false,
         }
     }
+}
+
+/// What rounding can do to the distance of a ball's centre from a plane with this offset.
+#[inline]
+pub(crate) fn rounding_of(body: &Ball, offset: Real) -> Real {
+    16.0 * Real::EPSILON * (body.center.max_abs() + offset.abs() + body.radius)
 }
 
 /// Bounding spheres of all bodies, rotation matrices of those that are no spheres, boxes where the broad phase wants them.

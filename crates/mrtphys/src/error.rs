@@ -89,6 +89,12 @@ pub enum Error {
         /// the kind's name
         name: String,
     },
+    /// A kind that is in the inventory already.
+    #[error("kind '{name}' is there already")]
+    DuplicateKind {
+        /// the kind's name
+        name: String,
+    },
     /// Two objects overlap where that was not allowed.
     #[error("{a} and {b} overlap by {depth} m at the start")]
     Overlap {

@@ -2,7 +2,7 @@
 //! and the pairs that no cell can answer for.
 
 use super::{BoundsView, Candidates};
-use crate::bounds::{Aabb, Ball, BoundaryBounds};
+use crate::bounds::{Aabb, Ball, BoundaryBounds, rounding_of};
 use crate::math::{ROUNDING, Real, Vec3, max};
 
 /// The objects of a step, sorted by how they must be treated. Objects are numbered: bodies by slot, then the listed faces.
@@ -84,9 +84,12 @@ impl Fence {
     /// Whether the body may reach behind some face. For an axis-parallel normal this is the very expression of
     /// [`BoundaryBounds::reaches_behind`], since products with 0 and 1 are exact.
     fn may_be_crossed(&self, body: &Ball) -> bool {
-        self.oblique
-            || (0..3)
-                .any(|k| body.center[k] - self.low[k] <= body.radius || -body.center[k] - self.high[k] <= body.radius)
+        let near =
+            |distance: Real, offset: Real| offset.is_finite() && distance <= body.radius + rounding_of(body, offset);
+        let crosses = |k: usize| {
+            near(body.center[k] - self.low[k], self.low[k]) || near(-body.center[k] - self.high[k], self.high[k])
+        };
+        self.oblique || (0..3).any(crosses)
     }
 }
 

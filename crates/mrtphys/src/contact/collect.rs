@@ -1,6 +1,6 @@
 //! Stages 3 to 5: from bounds to candidates, from candidates to contacts, and into the order of response.
 
-use super::let_back::LetBack;
+use super::let_back::{LetBack, Standing};
 use super::{Contact, Other};
 use crate::bounds::Ball;
 use crate::broad::BoundsView;
@@ -9,6 +9,7 @@ use crate::math::{Mat3, Vec3};
 use crate::model::Model;
 use crate::narrow::{Placed, Touches};
 use crate::par;
+use crate::shape::LimitPlane;
 use crate::state::State;
 use crate::work::Work;
 
@@ -75,23 +76,17 @@ pub fn collect(model: &Model, state: &State, let_back: &mut LetBack, work: &mut 
     work.counters.contacts += contacts.list.len() as u64;
 }
 
-/// Two-sided planes must know on which side each body is at home.
-fn settle_planes(model: &Model, state: &State, let_back: &mut LetBack) {
+/// Two-sided planes must know on which side each body is at home: called before a body first moves, and after every motion.
+pub fn settle_planes(model: &Model, state: &State, let_back: &mut LetBack) {
     for (index, boundary) in model.boundaries.iter().enumerate() {
-        if let Some(plane) = boundary.shape.downcast::<crate::shape::LimitPlane>() {
-            let bodies = model.serial.iter().zip(&state.lines).enumerate();
-            for (slot, (&serial, line)) in bodies {
-                if line.radius >= 0.0 && !model.fixed[slot] {
-                    let reach = line.radius;
-                    let_back.settle(
-                        index as u32,
-                        serial,
-                        plane.normal().dot(line.x - boundary.position),
-                        reach,
-                        plane.normal().dot(line.v),
-                    );
-                }
+        let Some(plane) = boundary.shape.downcast::<LimitPlane>() else { continue };
+        for (slot, (&serial, line)) in model.serial.iter().zip(&state.lines).enumerate() {
+            if line.radius < 0.0 || model.fixed[slot] {
+                continue;
             }
+            let ball = Ball { center: line.x, radius: line.radius };
+            let standing = Standing::of(boundary.position, plane.normal(), &ball, line.v);
+            let_back.settle(index as u32, serial, &standing);
         }
     }
 }
@@ -132,12 +127,7 @@ impl Scene<'_> {
         let entry = self.model.table.lookup(self.model.body(a as usize).kind, self.model.body(b as usize).kind);
         let (first, second) = (self.placed(a), self.placed(b));
         let start = block.touches.list.len();
-        if entry.swapped {
-            (entry.routine)(&second, &first, &mut block.touches);
-            block.touches.flip_from(start);
-        } else {
-            (entry.routine)(&first, &second, &mut block.touches);
-        }
+        entry.call(&first, &second, &mut block.touches);
         let key = if self.thesis_order {
             (u64::from(low) << 32) | (1 << 31) | u64::from(high)
         } else {
@@ -157,15 +147,10 @@ impl Scene<'_> {
             position: boundary.position,
             rotation: &Mat3::IDENTITY,
             ball: self.model.wall_bounds[wall as usize].ball,
-            home_side: self.let_back.home_side(wall, serial).unwrap_or(0.0),
+            home_side: self.let_back.home_side(wall, serial),
         };
         let start = block.touches.list.len();
-        if entry.swapped {
-            (entry.routine)(&second, &first, &mut block.touches);
-            block.touches.flip_from(start);
-        } else {
-            (entry.routine)(&first, &second, &mut block.touches);
-        }
+        entry.call(&first, &second, &mut block.touches);
         let key = (u64::from(serial) << 32) | u64::from(wall) | if self.thesis_order { 0 } else { 1 << 63 };
         self.emit(key, body, Other::Wall(wall), start, block);
     }

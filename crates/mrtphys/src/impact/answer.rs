@@ -172,6 +172,7 @@ fn party(model: &Model, state: &State, slot: u32, point: Vec3) -> Party {
         inverse_inertia: body.inertia.inverse_world(spin.q),
         v: line.v,
         w: body.inertia.angular_velocity(spin.q, spin.l),
+        angular_momentum: spin.l,
         r: point - line.x,
     }
 }

@@ -1,7 +1,7 @@
 //! Simultaneous impacts: contacts that hang together through bodies that can move are answered at once.
 
 use super::answer::{PairSurfaces, answer_one, count, encounter};
-use super::reflection::{Group, GroupBody, GroupContact, reflect};
+use super::reflection::{BUDGET, Group, GroupBody, GroupContact, reflect};
 use crate::contact::collect::manifold;
 use crate::contact::{Contact, Other};
 use crate::event::StepEvent;
@@ -98,17 +98,18 @@ fn reflect_group(
                 .map_or(surface.restitution, |e| e.restitution);
             let a = table.member(recipe, state, contact.a);
             let b = match contact.b {
-                Other::Body(slot) => table.member(recipe, state, slot),
+                Other::Body(slot) => Some(table.member(recipe, state, slot)),
                 Other::Wall(_) => None,
             };
-            let arm = |member: Option<usize>| member.map_or(Vec3::ZERO, |m| point - table.position(state, m));
-            let (ra, rb) = (arm(a), arm(b));
-            entries.push(GroupContact::between(a, b, contact.normal, ra, rb, restitution));
+            let ra = point - table.position(state, a);
+            let rb = b.map_or(Vec3::ZERO, |m| point - table.position(state, m));
+            let (normal, wall_velocity) = (contact.normal, Vec3::ZERO);
+            entries.push(GroupContact { a, b, normal, ra, rb, restitution, wall_velocity });
             rows.push((index, point));
         }
     }
     let before = table.bodies.clone();
-    let outcome = reflect(&mut Group { bodies: &mut table.bodies, contacts: &entries });
+    let outcome = reflect(Group { bodies: &mut table.bodies, contacts: &entries }, BUDGET);
     work.counters.undecided += u64::from(!outcome.decided);
     if outcome.rounds == 0 {
         return;
@@ -123,7 +124,7 @@ fn reflect_group(
         let contact = contacts[index];
         count(work, contact);
         let impulse = contact.normal * -size;
-        turn(state, &table, entry.a, entry.ra, impulse);
+        turn(state, &table, Some(entry.a), entry.ra, impulse);
         turn(state, &table, entry.b, entry.rb, -impulse);
         let energy_change = -size * contact.normal.dot(mean_relative_velocity(&before, &table.bodies, entry));
         ledger.restitution += energy_change;
@@ -137,7 +138,9 @@ fn reflect_group(
 
 /// Angular momentum is the state; the group works with angular velocities.
 fn turn(state: &mut State, table: &Members, member: Option<usize>, arm: Vec3, impulse: Vec3) {
-    if let Some(m) = member {
+    if let Some(m) = member
+        && table.bodies[m].is_movable()
+    {
         state.spins[table.slots[m] as usize].l += arm.cross(impulse);
     }
 }
@@ -146,11 +149,11 @@ fn turn(state: &mut State, table: &Members, member: Option<usize>, arm: Vec3, im
 fn mean_relative_velocity(before: &[GroupBody], after: &[GroupBody], c: &GroupContact) -> Vec3 {
     let at =
         |bodies: &[GroupBody], m: Option<usize>, r: Vec3| m.map_or(Vec3::ZERO, |m| bodies[m].v + bodies[m].w.cross(r));
-    let of = |bodies: &[GroupBody]| at(bodies, c.a, c.ra) - at(bodies, c.b, c.rb);
+    let of = |bodies: &[GroupBody]| at(bodies, Some(c.a), c.ra) - at(bodies, c.b, c.rb);
     (of(before) + of(after)) * (0.5 as Real)
 }
 
-/// The bodies of a group that can move.
+/// The bodies of a group; those of infinite mass take part with zero inverse mass.
 #[derive(Default)]
 struct Members {
     slots: Vec<u32>,
@@ -158,13 +161,10 @@ struct Members {
 }
 
 impl Members {
-    fn member(&mut self, recipe: &Recipe<'_>, state: &State, slot: u32) -> Option<usize> {
+    fn member(&mut self, recipe: &Recipe<'_>, state: &State, slot: u32) -> usize {
         let i = slot as usize;
-        if recipe.model.fixed[i] {
-            return None;
-        }
         if let Some(m) = self.slots.iter().position(|&s| s == slot) {
-            return Some(m);
+            return m;
         }
         let (line, spin, inertia) = (&state.lines[i], &state.spins[i], &recipe.model.body(i).inertia);
         self.slots.push(slot);
@@ -174,7 +174,7 @@ impl Members {
             v: line.v,
             w: inertia.angular_velocity(spin.q, spin.l),
         });
-        Some(self.slots.len() - 1)
+        self.slots.len() - 1
     }
 
     fn position(&self, state: &State, member: usize) -> Vec3 {

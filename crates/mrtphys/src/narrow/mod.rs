@@ -6,6 +6,9 @@ pub mod pair_table;
 pub mod pairs;
 pub mod sat;
 pub mod clip;
+pub(crate) mod convex_contact;
+#[cfg(test)]
+mod exact_tests;
 
 use crate::bounds::Ball;
 use crate::math::{Mat3, Real, Vec3};
@@ -50,6 +53,8 @@ pub struct Touches {
     pub list: Vec<Touch>,
     /// manifold points of all contacts \[m\], world coordinates
     pub points: Vec<Vec3>,
+    /// memory of the routines for polyhedra
+    pub(crate) scratch: convex_contact::PairScratch,
 }
 
 impl Touches {

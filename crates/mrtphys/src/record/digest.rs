@@ -86,7 +86,8 @@ pub(crate) fn state_hash(model: &Model, state: &State, order: &[u32]) -> String 
     }
     state.contacts.keys().iter().for_each(|&k| d.word(k));
     for e in state.let_back.entries() {
-        e.into_iter().for_each(|w| d.word(w));
+        let words = [u64::from(e.boundary), u64::from(e.serial), e.side as u64, u64::from(e.crossed)];
+        words.into_iter().for_each(|w| d.word(w));
     }
     format!("{:032x}", d.finish())
 }

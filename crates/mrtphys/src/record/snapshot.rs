@@ -3,7 +3,7 @@
 //! before it. The model is not in it: a snapshot is restored into a world made from the same scene.
 
 use super::digest::{Digest, model_fingerprint};
-use crate::contact::let_back::LetBack;
+use crate::contact::let_back::{Entry, LetBack};
 use crate::contact::memory::ContactMemory;
 use crate::counters::Counters;
 use crate::error::{Error, Result};
@@ -37,9 +37,11 @@ pub(crate) fn write(model: &Model, state: &State, books: &Books, order: &[u32]) 
     }
     out.word(state.contacts.keys().len() as u64);
     state.contacts.keys().iter().for_each(|&k| out.word(k));
-    let entries: Vec<[u64; 3]> = state.let_back.entries().collect();
-    out.word(entries.len() as u64);
-    entries.into_iter().flatten().for_each(|w| out.word(w));
+    out.word(state.let_back.entries().count() as u64);
+    for e in state.let_back.entries() {
+        out.word((u64::from(e.boundary) << 32) | u64::from(e.serial));
+        out.word((u64::from(e.side > 0) << 1) | u64::from(e.crossed));
+    }
     write_books(&mut out, books);
     let mut digest = Digest::default();
     digest.bytes(&out.bytes);
@@ -82,10 +84,9 @@ pub(crate) fn read(bytes: &[u8], model: &Model, present: &State, order: &[u32]) 
     }
     let count = input.count(8)?;
     state.contacts = ContactMemory::from_keys((0..count).map(|_| input.word()).collect::<Result<_>>()?);
-    let count = input.count(24)?;
-    let entries: Vec<[u64; 3]> =
-        (0..count).map(|_| Ok([input.word()?, input.word()?, input.word()?])).collect::<Result<_>>()?;
-    state.let_back = LetBack::from_entries(&entries).ok_or_else(|| fault("the let-back memory is not one"))?;
+    let count = input.count(16)?;
+    let entries: Vec<Entry> = (0..count).map(|_| read_entry(&mut input)).collect::<Result<_>>()?;
+    state.let_back = LetBack::from_entries(entries).ok_or_else(|| fault("the let-back memory is not one"))?;
     let books = read_books(&mut input)?;
     if !input.bytes.is_empty() {
         return Err(fault("there is more in it than there should be"));
@@ -122,6 +123,12 @@ fn read_body(input: &mut Reader<'_>, inverse_mass: Real) -> Result<(Line, Spin)>
         return Err(fault("a body is not finite"));
     }
     Ok((Line { x, radius, v, inverse_mass }, Spin { q, l }))
+}
+
+fn read_entry(input: &mut Reader<'_>) -> Result<Entry> {
+    let (who, what) = (input.word()?, input.word()?);
+    let side = if what & 2 == 0 { -1 } else { 1 };
+    Ok(Entry { boundary: (who >> 32) as u32, serial: who as u32, side, crossed: what & 1 == 1 })
 }
 
 fn read_books(input: &mut Reader<'_>) -> Result<Books> {

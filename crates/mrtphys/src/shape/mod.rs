@@ -9,14 +9,22 @@ pub mod sphere;
 pub mod polyhedron;
 pub mod quadrangle;
 pub mod half_space;
+pub(crate) mod cell;
+pub(crate) mod crossing;
+pub(crate) mod edges;
+pub(crate) mod planar;
+pub(crate) mod surface;
+pub(crate) mod wide;
 
-pub use half_space::{HalfSpace, LimitPlane, LimitQuadrangle, limit_box};
+pub use enclosing::smallest_enclosing_sphere;
+pub use half_space::{HalfSpace, LimitPlane, LimitQuadrangle, boundary_bounds, limit_box};
 pub use mass::MassProperties;
 pub use polyhedron::Polyhedron;
 pub use quadrangle::Quadrangle;
 pub use sphere::Sphere;
 
 use crate::bounds::{Aabb, Ball};
+use crate::error::{Error, Result};
 use crate::math::{Mat3, Real, Vec3};
 use std::any::Any;
 use std::fmt::Debug;
@@ -63,4 +71,48 @@ impl dyn Shape {
     pub fn downcast<T: Shape>(&self) -> Option<&T> {
         (self as &dyn Any).downcast_ref::<T>()
     }
+}
+
+/// The largest extent of some points along an axis \[m\]; zero for none.
+pub(crate) fn extent(points: &[Vec3]) -> Real {
+    if points.is_empty() {
+        return 0.0;
+    }
+    let b = Aabb::of_points(points.iter().copied());
+    (b.max - b.min).max_abs()
+}
+
+/// The power of two at or below `x` (positive and finite): dividing by it is exact, and what is computed from the quotient
+/// scales exactly when a scene is scaled by a power of two.
+pub(crate) fn power_of_two(x: Real) -> Real {
+    libm::ldexp(1.0, libm::ilogb(x))
+}
+
+/// That the points are finite, and that their extent and their distance from the author's origin are sizes we can compute
+/// with.
+pub(crate) fn check_points(object: &str, points: &[Vec3]) -> Result<Real> {
+    if !points.iter().all(|p| p.is_finite()) {
+        return Err(Error::NonFinite { object: object.into(), field: "points" });
+    }
+    let size = extent(points);
+    let refuse = |field, value| Err(Error::OutOfRange { object: object.into(), field, value, expected: SIZE_RANGE });
+    if size > 0.0 && !(SMALLEST_SIZE..=LARGEST_SIZE).contains(&size) {
+        return refuse("size", size);
+    }
+    let distance = points.iter().fold(0.0, |m, p| crate::math::max(m, p.max_abs()));
+    if distance > LARGEST_SIZE {
+        return refuse("points", distance);
+    }
+    Ok(size)
+}
+
+/// That a length is one we can compute with.
+pub(crate) fn check_size(object: &str, field: &'static str, value: Real) -> Result<()> {
+    if !value.is_finite() {
+        return Err(Error::NonFinite { object: object.into(), field });
+    }
+    if !(SMALLEST_SIZE..=LARGEST_SIZE).contains(&value) {
+        return Err(Error::OutOfRange { object: object.into(), field, value, expected: SIZE_RANGE });
+    }
+    Ok(())
 }

@@ -19,6 +19,9 @@ use std::time::Instant;
 pub(crate) fn step(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, books: &mut Books) -> Result<()> {
     let model = recipe.model;
     let start = Instant::now();
+    let mut let_back = std::mem::take(&mut state.let_back);
+    collect::settle_planes(model, state, &mut let_back);
+    state.let_back = let_back;
     move_all(recipe, state, work, books)?;
     let moved = Instant::now();
     bounds::place(model, state, work);

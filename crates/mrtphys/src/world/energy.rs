@@ -1,6 +1,7 @@
 //! Energies, momenta, and the booking of changes made from outside.
 
 use super::World;
+use super::fields::resolve_scopes;
 use crate::field::sum::potential_energy;
 use crate::ledger::{Energy, Ledger};
 use crate::math::{Real, Vec3};
@@ -14,8 +15,18 @@ impl World {
             energy.linear += linear;
             energy.rotational += rotational;
         }
-        energy.potential = potential_energy(&self.model, &self.state);
+        energy.potential = self.potential();
         energy
+    }
+
+    /// Potential energy \[J\]. Bodies may have come since the fields' scopes were last turned into slots.
+    fn potential(&self) -> Real {
+        if self.scopes_are_fresh() {
+            return potential_energy(&self.model, &self.state);
+        }
+        let mut model = self.model.clone();
+        resolve_scopes(&mut model, &self.ids, self.tag);
+        potential_energy(&model, &self.state)
     }
 
     /// Energies when the first step began \[J\]; before it, those now.

@@ -5,6 +5,7 @@ use super::ids::IdTable;
 use crate::error::{Error, Result};
 use crate::field::{FlowField, ForceField, PlacedFlow, PlacedForce, Reach, Scope};
 use crate::id::FieldId;
+use crate::model::Model;
 use std::sync::Arc;
 
 impl World {
@@ -80,19 +81,25 @@ impl World {
 }
 
 impl World {
+    pub(super) fn scopes_are_fresh(&self) -> bool {
+        self.scopes_epoch == Some(self.model.epoch)
+    }
+
     /// Turns the fields' scopes into slots, if bodies have come, gone or changed their slots since.
     pub(super) fn refresh_scopes(&mut self) {
-        if self.scopes_epoch == Some(self.model.epoch) {
-            return;
+        if !self.scopes_are_fresh() {
+            self.scopes_epoch = Some(self.model.epoch);
+            resolve_scopes(&mut self.model, &self.ids, self.tag);
         }
-        self.scopes_epoch = Some(self.model.epoch);
-        let count = self.state.lines.len();
-        let (ids, tag) = (&self.ids, self.tag);
-        let forces = self.model.forces.iter_mut().map(|f| (&f.scope, &mut f.reach));
-        let flows = self.model.flows.iter_mut().map(|f| (&f.scope, &mut f.reach));
-        for (scope, reach) in forces.chain(flows) {
-            *reach = resolve(scope, count, ids, tag);
-        }
+    }
+}
+
+pub(super) fn resolve_scopes(model: &mut Model, ids: &IdTable, world: u32) {
+    let count = model.serial.len();
+    let forces = model.forces.iter_mut().map(|f| (&f.scope, &mut f.reach));
+    let flows = model.flows.iter_mut().map(|f| (&f.scope, &mut f.reach));
+    for (scope, reach) in forces.chain(flows) {
+        *reach = resolve(scope, count, ids, world);
     }
 }
 

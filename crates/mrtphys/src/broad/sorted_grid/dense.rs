@@ -1,7 +1,7 @@
 //! All cells of the scene's box, with a counting sort.
 
 use super::cells::Frame;
-use super::{Found, test};
+use super::{Found, run};
 use crate::bounds::{Aabb, Ball};
 use crate::broad::{BoundsView, Cell};
 use crate::math::Vec3;
@@ -81,21 +81,19 @@ impl Dense {
         let rows = [sx, sxy - sx, sxy, sxy + sx];
         for i in first..last {
             let (slot, ball, cell) = (self.slots[i], self.balls[i], self.cells[i] as usize);
-            self.run(i + 1, self.start[cell + 2] as usize, slot, &ball, view, found);
+            run((slot, &ball), self.others(i + 1, self.start[cell + 2] as usize), view, found);
             for row in rows {
                 let from = self.start[cell + row - 1] as usize;
                 let to = self.start[cell + row + 2] as usize;
-                self.run(from, to, slot, &ball, view, found);
+                run((slot, &ball), self.others(from, to), view, found);
             }
         }
     }
 
+    /// The bodies of a run of places.
     #[inline(always)]
-    fn run(&self, from: usize, to: usize, slot: u32, ball: &Ball, view: &BoundsView<'_>, found: &mut Found) {
-        found.tests += (to - from) as u64;
-        for k in from..to {
-            test(slot, ball, self.slots[k], &self.balls[k], view, found);
-        }
+    fn others(&self, from: usize, to: usize) -> impl ExactSizeIterator<Item = (u32, &Ball)> {
+        self.slots[from..to].iter().copied().zip(&self.balls[from..to])
     }
 
     /// Pairs of a body that is not in this grid and no larger than the largest in it.
@@ -114,7 +112,7 @@ impl Dense {
                 let row = y * self.stride[0] + z * self.stride[1];
                 let from = self.start[row + low(at[0])] as usize;
                 let to = self.start[row + high(at[0], nx) + 1] as usize;
-                self.run(from, to, slot, ball, view, found);
+                run((slot, ball), self.others(from, to), view, found);
             }
         }
     }

@@ -230,12 +230,31 @@ impl Extent {
     }
 }
 
-/// Reports a pair if the two balls meet and not both bodies are fixed.
+/// Compares a body with a run of others and reports those it meets. Two fixed bodies are never compared.
 #[inline(always)]
-fn test(a: u32, ball_a: &Ball, b: u32, ball_b: &Ball, view: &BoundsView<'_>, found: &mut Found) {
+fn run<'a>(
+    (slot, ball): (u32, &Ball),
+    others: impl ExactSizeIterator<Item = (u32, &'a Ball)>,
+    view: &BoundsView<'_>,
+    found: &mut Found,
+) {
+    if view.is_fixed(slot) {
+        for (other, other_ball) in others.filter(|&(other, _)| !view.is_fixed(other)) {
+            found.tests += 1;
+            test((slot, ball), (other, other_ball), found);
+        }
+        return;
+    }
+    found.tests += others.len() as u64;
+    others.for_each(|other| test((slot, ball), other, found));
+}
+
+/// Reports a pair if the two balls, neither of which is empty, meet: the expression of [`Ball::meets`].
+#[inline(always)]
+fn test((a, ball_a): (u32, &Ball), (b, ball_b): (u32, &Ball), found: &mut Found) {
     let d = ball_a.center - ball_b.center;
     let r = ball_a.radius + ball_b.radius;
-    if d.length_squared() <= r * r && !(view.is_fixed(a) && view.is_fixed(b)) {
+    if d.length_squared() <= r * r {
         found.pairs.push([a, b]);
     }
 }

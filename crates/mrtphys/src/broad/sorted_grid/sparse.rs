@@ -1,7 +1,7 @@
 //! Occupied cells only, sorted by their coordinates.
 
 use super::cells::Frame;
-use super::{Found, test};
+use super::{Found, run};
 use crate::bounds::{Aabb, Ball};
 use crate::broad::{BoundsView, Cell};
 use crate::math::Vec3;
@@ -60,15 +60,15 @@ impl Sparse {
                 cell = k;
                 let [x, y, z] = coordinates(k);
                 own_end = self.after([x + 1, y, z], i);
-                for (run, [dy, dz]) in runs.iter_mut().zip(ROWS) {
+                for (bounds, [dy, dz]) in runs.iter_mut().zip(ROWS) {
                     let from = self.place([x - 1, y + dy, z + dz]);
-                    *run = (from, self.after([x + 1, y + dy, z + dz], from));
+                    *bounds = (from, self.after([x + 1, y + dy, z + dz], from));
                 }
             }
             let ball = self.balls[i];
-            self.run((i + 1, own_end), slot, &ball, view, found);
-            for run in runs {
-                self.run(run, slot, &ball, view, found);
+            run((slot, &ball), self.others(i + 1, own_end), view, found);
+            for (from, to) in runs {
+                run((slot, &ball), self.others(from, to), view, found);
             }
         }
     }
@@ -91,12 +91,10 @@ impl Sparse {
         from + self.keys[from..].partition_point(|&(k, _)| k <= wanted)
     }
 
+    /// The bodies of a run of places.
     #[inline(always)]
-    fn run(&self, (from, to): (usize, usize), slot: u32, ball: &Ball, view: &BoundsView<'_>, found: &mut Found) {
-        found.tests += (to - from) as u64;
-        for k in from..to {
-            test(slot, ball, self.keys[k].1, &self.balls[k], view, found);
-        }
+    fn others(&self, from: usize, to: usize) -> impl ExactSizeIterator<Item = (u32, &Ball)> {
+        self.keys[from..to].iter().map(|k| k.1).zip(&self.balls[from..to])
     }
 
     /// Pairs of a body that is not in this grid and no larger than the largest in it.
@@ -107,7 +105,7 @@ impl Sparse {
             for dy in -1..=1 {
                 let from = self.place([x - 1, y + dy, z + dz]);
                 let to = self.after([x + 1, y + dy, z + dz], from);
-                self.run((from, to), slot, ball, view, found);
+                run((slot, ball), self.others(from, to), view, found);
             }
         }
     }

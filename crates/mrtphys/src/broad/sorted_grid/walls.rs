@@ -2,7 +2,7 @@
 
 use super::super::{BoundsView, Candidates};
 use crate::bounds::{Aabb, Ball, BoundaryBounds};
-use crate::math::{Real, Vec3};
+use crate::math::{Real, Vec3, max};
 
 /// Reports every body that reaches behind a limit or meets a bounded one, and every body with each two-sided plane.
 pub(super) fn find(view: &BoundsView<'_>, out: &mut Candidates) {
@@ -10,8 +10,11 @@ pub(super) fn find(view: &BoundsView<'_>, out: &mut Candidates) {
         return;
     }
     let clear = clear_box(view.boundaries);
+    let size = max(clear.min.max_abs(), clear.max.max_abs());
+    // Where a side is open, bodies may be anywhere: none is told clear by the box.
+    let allowance = if size.is_finite() { 64.0 * Real::EPSILON * size } else { Real::INFINITY };
     for (slot, ball) in view.balls.iter().enumerate() {
-        if ball.is_empty() || is_clear(&clear, ball) || view.is_fixed(slot as u32) {
+        if ball.is_empty() || is_clear(&clear, allowance, ball) || view.is_fixed(slot as u32) {
             continue;
         }
         out.sphere_tests += view.boundaries.len() as u64;
@@ -38,7 +41,7 @@ fn clear_box(boundaries: &[BoundaryBounds]) -> Aabb {
         let axis = [Vec3::X, Vec3::Y, Vec3::Z].into_iter().position(|a| normal == a || normal == -a);
         let Some(axis) = axis else { return Aabb::EMPTY };
         if normal[axis] > 0.0 {
-            clear.min[axis] = crate::math::max(clear.min[axis], offset);
+            clear.min[axis] = max(clear.min[axis], offset);
         } else {
             clear.max[axis] = crate::math::min(clear.max[axis], -offset);
         }
@@ -47,9 +50,10 @@ fn clear_box(boundaries: &[BoundaryBounds]) -> Aabb {
 }
 
 #[inline(always)]
-fn is_clear(clear: &Aabb, ball: &Ball) -> bool {
-    // The same differences as `reaches_behind` makes, so that rounding cannot tell otherwise: normal . x - offset > r.
-    let r: Real = ball.radius;
+fn is_clear(clear: &Aabb, allowance: Real, ball: &Ball) -> bool {
+    // The same differences as `reaches_behind` makes, and at least its allowance for rounding: inside of the box no
+    // coordinate is larger than `size`.
+    let r: Real = ball.radius * (1.0 + 64.0 * Real::EPSILON) + allowance;
     let c = ball.center;
     (c.x - clear.min.x > r)
         & (clear.max.x - c.x > r)

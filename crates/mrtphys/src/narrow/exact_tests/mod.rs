@@ -1,0 +1,7 @@
+//! The exact routines against slow twins, closed forms and reference vectors.
+
+mod bodies;
+mod flat_landing;
+mod overlap;
+mod spheres;
+mod timing;
