@@ -104,6 +104,7 @@ struct Counts {
     /// no certificate at fixed steps
     missed: Option<u64>,
     contacts: u64,
+    wall_impacts: u64,
     fallbacks: u64,
     projections: u64,
     quarantined: u64,
@@ -211,6 +212,7 @@ fn report<'a>(world: &'a World, facts: &'a Facts<'_>) -> Report<'a> {
             undecided: totals.undecided,
             missed: None,
             contacts: totals.contacts,
+            wall_impacts: totals.wall_impacts,
             fallbacks: totals.fallbacks,
             projections: totals.projections,
             quarantined: totals.quarantined,

@@ -97,7 +97,11 @@ fn counts(out: &mut String, world: &World) -> std::fmt::Result {
         of(t.detect_calls),
         of(t.impacts)
     )?;
-    writeln!(out, "impacts        {}, undecided {}", t.impacts, t.undecided)?;
+    writeln!(
+        out,
+        "impacts        {}, {} of them against boundaries; undecided {}",
+        t.impacts, t.wall_impacts, t.undecided
+    )?;
     writeln!(out, "largest step   {} diameters", brief(world.largest_step()))
 }
 
