@@ -52,17 +52,9 @@ pub(crate) fn write(model: &Model, state: &State, books: &Books, order: &[u32]) 
 fn write_books(out: &mut Writer, books: &Books) {
     books.ledger.entries().into_iter().for_each(|(_, value)| out.real(value));
     let t = &books.totals;
-    for count in [
-        t.sphere_tests,
-        t.detect_calls,
-        t.contacts,
-        t.impacts,
-        t.wall_impacts,
-        t.fallbacks,
-        t.projections,
-        t.undecided,
-        t.quarantined,
-    ] {
+    for count in
+        [t.sphere_tests, t.detect_calls, t.contacts, t.impacts, t.fallbacks, t.projections, t.undecided, t.quarantined]
+    {
         out.word(count);
     }
     out.word(u64::from(books.initial.is_some()));
