@@ -207,3 +207,18 @@ fn a_full_disk_ends_the_run_with_2_and_the_other_files_are_written() {
     }
     folder.run("run gas.toml --quiet --frames 2 --trajectory /dev/null --report /dev/null").expect(0);
 }
+
+#[test]
+fn writing_things_down_changes_nothing() {
+    let folder = Folder::with_scenes("observed");
+    for scene in ["gas.toml", "rain.toml"] {
+        // Far enough for a difference in the last bit of one impact to show.
+        let plain = folder.report(&format!("{scene} --frames 120"));
+        let observed = folder.report(&format!("{scene} --frames 120 --events e.csv --trajectory t.csv"));
+        for member in ["state_hash", "counters", "ledger", "energy"] {
+            assert_eq!(observed[member], plain[member], "{scene}: {member}");
+        }
+        let impacts = plain["counters"]["impacts"].as_u64().unwrap();
+        assert_eq!(csv(&folder.text("e.csv")).len() as u64, impacts + 1, "{scene}");
+    }
+}

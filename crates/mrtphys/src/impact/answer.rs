@@ -44,13 +44,16 @@ pub(super) fn answer_one(
     pairs: &mut PairSurfaces<'_>,
 ) {
     let surface = pairs.of(contact);
-    if surface.smooth_spheres && !recipe.record_events {
-        if surface.restitution == 1.0 {
-            if bounce_smooth(state, contact) {
-                count(work, contact);
+    if surface.smooth_spheres && surface.restitution == 1.0 {
+        if let Some(impulse_n) = bounce_smooth(state, contact) {
+            count(work, contact);
+            if recipe.record_events {
+                // Written down or not, the impact is the same, and its energy change is the one the ledger books: none.
+                let (a, b, point, normal) = (contact.a, contact.b, contact.point, contact.normal);
+                work.events.push(StepEvent { a, b, point, normal, impulse_n, impulse_t: 0.0, energy_change: 0.0 });
             }
-            return;
         }
+        return;
     }
     let Some(encounter) = encounter(recipe, state, &work.accelerations, contact, surface) else { return };
     let Some(response) = super::sequential::respond(&encounter, recipe.law) else { return };
@@ -80,7 +83,8 @@ pub(super) fn count(work: &mut Work, contact: &Contact) {
 
 /// Elastic impact of two spheres, or of a sphere and what never moves, without friction: the impulse goes through both
 /// centres, so only velocities change. dp1 = -2 (v12 . n) / (1/m1 + 1/m2) n, equations (54), (55).
-fn bounce_smooth(state: &mut State, contact: &Contact) -> bool {
+/// Gives the impulse \[Ns\]; `None`: they do not approach.
+fn bounce_smooth(state: &mut State, contact: &Contact) -> Option<Real> {
     let n = contact.normal;
     let a = &state.lines[contact.a as usize];
     let (v_b, w_b) = match contact.b {
@@ -90,18 +94,18 @@ fn bounce_smooth(state: &mut State, contact: &Contact) -> bool {
     let approach = (a.v - v_b).dot(n);
     let weight = a.inverse_mass + w_b;
     if !(approach > 0.0) || weight == 0.0 {
-        return false;
+        return None;
     }
     let j = -2.0 * approach / weight;
     let (va, vb) = (a.v + n * (j * a.inverse_mass), v_b - n * (j * w_b));
     if !(va.is_finite() && vb.is_finite()) {
-        return false;
+        return None;
     }
     state.lines[contact.a as usize].v = va;
     if let Other::Body(slot) = contact.b {
         state.lines[slot as usize].v = vb;
     }
-    true
+    Some(-j)
 }
 
 /// Gives a the impulse and b the opposite, both at the contact point.
