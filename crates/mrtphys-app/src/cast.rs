@@ -103,7 +103,9 @@ impl Cast {
     pub fn find_for(&self, option: &str, name: &str) -> Outcome<Vec<Party>> {
         self.find(name).ok_or_else(|| {
             let names: Vec<Cow<'_, str>> = self.parties().take(MOST_COMPARED).map(|p| self.name(p)).collect();
-            let meant = closest(name, names.iter().map(|n| &**n));
+            // `gas` of `gas[0,0,0]`, `walls` of `walls.+x`
+            let whole = |n: &str| n.find(['[', '.']).unwrap_or(n.len());
+            let meant = closest(name, names.iter().flat_map(|n| [&n[..whole(n)], &**n]));
             let tip = meant.map(|m| format!("; did you mean '{m}'?")).unwrap_or_default();
             Failure::Wrong(format!("{option}: no body or boundary is named '{name}'{tip}"))
         })
@@ -135,6 +137,8 @@ mod tests {
         assert_eq!(cast.find("w.+x"), Some(vec![Party::Boundary(1)]));
         assert_eq!(cast.find("floor"), Some(vec![Party::Boundary(6)]));
         assert_eq!(cast.find("l[0,0,2]"), None);
+        let refused = cast.find_for("--events-only", "ww");
+        assert!(matches!(refused, Err(Failure::Wrong(text)) if text.contains("did you mean 'w'?")));
         let refused = cast.find_for("--events-only", "bal");
         assert!(matches!(refused, Err(Failure::Wrong(text)) if text.contains("did you mean 'ball'?")));
     }

@@ -37,11 +37,19 @@ pub fn load(name: &OsStr) -> Outcome<Scene> {
     if let Some(entry) = gallery().iter().find(|entry| entry.0 == text) {
         return Scene::from_text(entry.0, entry.1).map_err(wrong);
     }
-    let meant = closest(&text, gallery().iter().map(|entry| entry.0));
+    let meant = closest_scene(&text);
     let tip = meant.map(|m| format!("; did you mean '{m}'?")).unwrap_or_default();
     Err(Failure::Wrong(format!(
         "'{text}': there is no such file, and no gallery scene of this name (see 'mrtphys scenes'){tip}"
     )))
+}
+
+/// The gallery scene that was probably meant, also where the folder was left out.
+fn closest_scene(text: &str) -> Option<&'static str> {
+    let last = |name: &'static str| name.rsplit('/').next().unwrap_or(name);
+    let names = || gallery().iter().map(|entry| entry.0);
+    let meant = closest(text, names().flat_map(|n| [n, last(n)]))?;
+    names().find(|n| *n == meant || last(n) == meant)
 }
 
 /// Makes a scene's world.
@@ -80,4 +88,17 @@ fn apply(args: &RunArgs, scene: &mut Scene) {
     s.fps = args.fps.unwrap_or(s.fps);
     s.steps_per_frame = args.steps_per_frame.unwrap_or(s.steps_per_frame);
     scene.seed = args.seed.unwrap_or(scene.seed);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::closest_scene;
+
+    #[test]
+    fn a_gallery_scene_is_guessed_with_and_without_its_folder() {
+        assert_eq!(closest_scene("thesis/cub-8"), Some("thesis/cube-8"));
+        assert_eq!(closest_scene("cube-8"), Some("thesis/cube-8"));
+        assert_eq!(closest_scene("cradel"), Some("cradle"));
+        assert_eq!(closest_scene("xyz"), None);
+    }
 }

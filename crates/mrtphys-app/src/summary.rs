@@ -109,8 +109,8 @@ fn speed(out: &mut String, world: &World, facts: &Facts<'_>, steps: u64) -> std:
     let rate = steps as f64 / facts.wall_seconds.max(1e-9);
     let bodies = rate * world.body_count() as f64;
     let threads = if facts.threads == 1 { "1 thread".to_string() } else { format!("{} threads", facts.threads) };
-    let wall = facts.wall_seconds;
-    writeln!(out, "speed          {} steps/s, {} body steps/s, {wall:.3} s on {threads}", brief(rate), brief(bodies))
+    let wall = brief(facts.wall_seconds);
+    writeln!(out, "speed          {} steps/s, {} body steps/s; {wall} s on {threads}", brief(rate), brief(bodies))
 }
 
 /// The change relative to the start, where there was something.
