@@ -185,9 +185,17 @@ fn dispatch(cli: Cli) -> Outcome {
 }
 
 #[cfg(test)]
-mod tests {
+pub mod tests {
     use super::*;
     use clap::CommandFactory;
+
+    /// The options of a `run` command line, the program's name left out.
+    pub fn run_args(line: &[&str]) -> RunArgs {
+        match Cli::try_parse_from([&["mrtphys"], line].concat()).unwrap().command {
+            Some(Command::Run(args)) => *args,
+            other => panic!("{other:?} is not 'run'"),
+        }
+    }
 
     #[test]
     fn the_command_line_is_consistent() {

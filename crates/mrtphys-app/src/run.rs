@@ -30,7 +30,10 @@ pub fn run(args: &RunArgs, quiet: bool) -> Outcome {
 
 fn run_here(args: &RunArgs, quiet: bool, threads: usize) -> Outcome {
     check_files(args)?;
-    let mut ready = setup::prepare(args)?;
+    run_ready(args, quiet, threads, setup::prepare(args)?)
+}
+
+fn run_ready(args: &RunArgs, quiet: bool, threads: usize, mut ready: Ready) -> Outcome {
     let settings = ready.world.settings();
     let beat = Beat { fps: settings.fps, steps_per_frame: settings.steps_per_frame };
     let (steps_before, time) = (ready.world.steps(), ready.world.time());
@@ -181,5 +184,52 @@ impl Course {
             self.ending = Ending::Interrupted;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mrtphys::Vec3;
+    use mrtphys::field::{ForceField, Scope};
+    use std::sync::Arc;
+
+    /// A field that fails beyond x = 0.05 m. No scene can say one: what scenes say stays finite.
+    #[derive(Debug)]
+    struct Failing;
+
+    impl ForceField for Failing {
+        fn acceleration(&self, at: Vec3, _mass: f64) -> Vec3 {
+            if at.x > 0.05 { Vec3::splat(f64::NAN) } else { Vec3::ZERO }
+        }
+        fn potential(&self, _at: Vec3) -> Option<f64> {
+            None
+        }
+    }
+
+    #[test]
+    fn a_simulation_that_stops_reports_what_was_reached_and_ends_with_2() {
+        let folder = std::env::temp_dir().join(format!("mrtphys-run-stops-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let path = |name: &str| folder.join(name).into_os_string().into_string().unwrap();
+        let shape = "shape = { kind = \"sphere\", radius = 0.1 }\nvelocity = [1, 0, 0]";
+        std::fs::write(path("scene.toml"), format!("format = 1\n[[body]]\n{shape}\n")).unwrap();
+        let [scene, report, trajectory, snapshot] = ["scene.toml", "r.json", "t.csv", "s.snap"].map(path);
+        let line = ["run", &scene, "--report", &report, "--trajectory", &trajectory, "--snapshot", &snapshot];
+        let args = crate::cli::tests::run_args(&line);
+        let mut ready = setup::prepare(&args).unwrap();
+        ready.world.add_force(Arc::new(Failing), Scope::default()).unwrap();
+        let outcome = run_ready(&args, true, 1, ready);
+        let failure = outcome.unwrap_err();
+        assert_eq!(failure.status(), 2);
+        assert!(failure.to_string().contains("Failing") && failure.to_string().contains("0.05"), "{failure}");
+        let text = std::fs::read_to_string(&report).unwrap();
+        let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(report["stopped"], failure.to_string());
+        // 1 m/s x 24 steps / 480 per second = 0.05 m
+        assert_eq!((report["steps"].as_u64(), report["frames"].as_u64()), (Some(24), Some(3)));
+        assert_eq!(std::fs::read_to_string(&trajectory).unwrap().lines().count(), 1 + 4);
+        assert!(std::fs::metadata(&snapshot).unwrap().len() > 0);
+        std::fs::remove_dir_all(folder).unwrap();
     }
 }
