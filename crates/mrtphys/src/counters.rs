@@ -23,16 +23,54 @@ pub struct Counters {
     pub quarantined: u64,
 }
 
+impl Counters {
+    /// Names of the counts, in the order of [`to_array`](Counters::to_array).
+    pub const NAMES: [&'static str; 9] = [
+        "sphere_tests",
+        "detect_calls",
+        "contacts",
+        "impacts",
+        "wall_impacts",
+        "fallbacks",
+        "projections",
+        "undecided",
+        "quarantined",
+    ];
+
+    /// The counts in the order of [`NAMES`](Counters::NAMES).
+    pub fn to_array(&self) -> [u64; 9] {
+        [
+            self.sphere_tests,
+            self.detect_calls,
+            self.contacts,
+            self.impacts,
+            self.wall_impacts,
+            self.fallbacks,
+            self.projections,
+            self.undecided,
+            self.quarantined,
+        ]
+    }
+
+    /// From counts in the order of [`NAMES`](Counters::NAMES).
+    pub fn from_array(c: [u64; 9]) -> Counters {
+        Counters {
+            sphere_tests: c[0],
+            detect_calls: c[1],
+            contacts: c[2],
+            impacts: c[3],
+            wall_impacts: c[4],
+            fallbacks: c[5],
+            projections: c[6],
+            undecided: c[7],
+            quarantined: c[8],
+        }
+    }
+}
+
 impl std::ops::AddAssign for Counters {
     fn add_assign(&mut self, o: Counters) {
-        self.sphere_tests += o.sphere_tests;
-        self.detect_calls += o.detect_calls;
-        self.contacts += o.contacts;
-        self.impacts += o.impacts;
-        self.wall_impacts += o.wall_impacts;
-        self.fallbacks += o.fallbacks;
-        self.projections += o.projections;
-        self.undecided += o.undecided;
-        self.quarantined += o.quarantined;
+        let (a, b) = (self.to_array(), o.to_array());
+        *self = Counters::from_array(std::array::from_fn(|i| a[i] + b[i]));
     }
 }

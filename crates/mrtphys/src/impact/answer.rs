@@ -1,6 +1,7 @@
 //! Stage 6 as a whole: the contacts of the step, in their order, each with the law that belongs to its pair.
 
 use super::{Encounter, Party};
+use crate::contact::collect::manifold;
 use crate::contact::{Contact, Other};
 use crate::def::ImpactMode;
 use crate::event::StepEvent;
@@ -29,7 +30,7 @@ fn answer_in_order(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, ledg
     let contacts = std::mem::take(&mut work.contacts);
     let mut pairs = PairSurfaces::new(recipe.model);
     for contact in &contacts.list {
-        answer_one(recipe, state, work, ledger, contact, &mut pairs);
+        answer_one(recipe, state, work, ledger, (contact, &contacts.points), &mut pairs);
     }
     work.contacts = contacts;
 }
@@ -40,23 +41,71 @@ pub(super) fn answer_one(
     state: &mut State,
     work: &mut Work,
     ledger: &mut Ledger,
-    contact: &Contact,
+    (contact, points): (&Contact, &[Vec3]),
     pairs: &mut PairSurfaces<'_>,
 ) {
     let surface = pairs.of(contact);
-    if surface.smooth_spheres && surface.restitution == 1.0 {
-        if let Some(impulse_n) = bounce_smooth(state, contact) {
-            count(work, contact);
-            if recipe.record_events {
-                // Written down or not, the impact is the same, and its energy change is the one the ledger books: none.
-                let (a, b, point, normal) = (contact.a, contact.b, contact.point, contact.normal);
-                work.events.push(StepEvent { a, b, point, normal, impulse_n, impulse_t: 0.0, energy_change: 0.0 });
-            }
-        }
-        return;
+    let smooth = surface.friction == 0.0 && recipe.law.is_frictionless_at_zero();
+    if smooth && surface.spheres && surface.restitution == 1.0 {
+        return bounce_smooth(recipe, state, work, contact);
     }
-    let Some(encounter) = encounter(recipe, state, &work.accelerations, contact, surface) else { return };
-    let Some(response) = super::sequential::respond(&encounter, recipe.law) else { return };
+    let Some(found) = encounter(recipe, state, &work.accelerations, contact, surface) else { return };
+    if found.restitution == 0.0 && (smooth || recipe.law.is_dry_friction()) && contact.point_count > 1 {
+        return settle_area(recipe, state, work, ledger, (contact, points), &found);
+    }
+    respond(recipe, state, work, ledger, contact, &found);
+}
+
+/// A contact area without restitution is answered at all its corners at once, so that the pressure finds its place in the
+/// area: a block on an incline neither tips nor creeps.
+fn settle_area(
+    recipe: &Recipe<'_>,
+    state: &mut State,
+    work: &mut Work,
+    ledger: &mut Ledger,
+    (contact, points): (&Contact, &[Vec3]),
+    found: &Encounter,
+) {
+    let points = manifold(contact, points);
+    let center_b = match contact.b {
+        Other::Body(slot) => state.lines[slot as usize].x,
+        Other::Wall(_) => contact.point,
+    };
+    let centers = [state.lines[contact.a as usize].x, center_b];
+    let Some(response) = super::area::settle(found, points, centers) else { return };
+    let (mut sum, mut moment_arm) = (Vec3::ZERO, Vec3::ZERO);
+    for (&point, &impulse) in points.iter().zip(&response.impulses) {
+        push(state, &Contact { point, ..*contact }, impulse);
+        sum += impulse;
+        moment_arm += point * impulse.dot(contact.normal);
+    }
+    count(work, contact);
+    ledger.friction += response.friction_change;
+    ledger.restitution += response.restitution_change;
+    if recipe.record_events {
+        let along = sum.dot(contact.normal);
+        work.events.push(StepEvent {
+            a: contact.a,
+            b: contact.b,
+            point: if along < 0.0 { moment_arm / along } else { contact.point },
+            normal: contact.normal,
+            impulse_n: -along,
+            impulse_t: (sum - contact.normal * along).length(),
+            energy_change: response.friction_change + response.restitution_change,
+        });
+    }
+}
+
+/// Answers an impact with the law.
+fn respond(
+    recipe: &Recipe<'_>,
+    state: &mut State,
+    work: &mut Work,
+    ledger: &mut Ledger,
+    contact: &Contact,
+    encounter: &Encounter,
+) {
+    let Some(response) = super::sequential::respond(encounter, recipe.law) else { return };
     push(state, contact, response.impulse_on_a);
     count(work, contact);
     work.counters.fallbacks += u64::from(response.fallback);
@@ -83,29 +132,34 @@ pub(super) fn count(work: &mut Work, contact: &Contact) {
 
 /// Elastic impact of two spheres, or of a sphere and what never moves, without friction: the impulse goes through both
 /// centres, so only velocities change. dp1 = -2 (v12 . n) / (1/m1 + 1/m2) n, equations (54), (55).
-/// Gives the impulse \[Ns\]; `None`: they do not approach.
-fn bounce_smooth(state: &mut State, contact: &Contact) -> Option<Real> {
+fn bounce_smooth(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, contact: &Contact) {
     let n = contact.normal;
     let a = &state.lines[contact.a as usize];
     let (v_b, w_b) = match contact.b {
         Other::Body(slot) => (state.lines[slot as usize].v, state.lines[slot as usize].inverse_mass),
         Other::Wall(_) => (Vec3::ZERO, 0.0),
     };
-    let approach = (a.v - v_b).dot(n);
+    let v = a.v - v_b;
+    let approach = v.dot(n);
     let weight = a.inverse_mass + w_b;
     if !(approach > 0.0) || weight == 0.0 {
-        return None;
+        return;
     }
     let j = -2.0 * approach / weight;
     let (va, vb) = (a.v + n * (j * a.inverse_mass), v_b - n * (j * w_b));
     if !(va.is_finite() && vb.is_finite()) {
-        return None;
+        return;
     }
     state.lines[contact.a as usize].v = va;
     if let Other::Body(slot) = contact.b {
         state.lines[slot as usize].v = vb;
     }
-    Some(-j)
+    count(work, contact);
+    if recipe.record_events {
+        let energy_change = 0.5 * j * (v + (va - vb)).dot(n);
+        let (a, b, point) = (contact.a, contact.b, contact.point);
+        work.events.push(StepEvent { a, b, point, normal: n, impulse_n: -j, impulse_t: 0.0, energy_change });
+    }
 }
 
 /// Gives a the impulse and b the opposite, both at the contact point.
@@ -186,8 +240,8 @@ fn party(model: &Model, state: &State, slot: u32, point: Vec3) -> Party {
 pub(crate) struct PairSurface {
     pub friction: Real,
     pub restitution: Real,
-    /// spheres without friction: no torque can act
-    pub smooth_spheres: bool,
+    /// both are spheres, or a sphere and a boundary: without friction no torque can act
+    pub spheres: bool,
 }
 
 /// Surface values of pairs of types; consecutive contacts mostly ask for the same.
@@ -222,7 +276,7 @@ impl<'a> PairSurfaces<'a> {
 
     fn compute(&self, type_a: u32, key_b: u32) -> PairSurface {
         let a: &BodyType = &self.model.types[type_a as usize];
-        let (b_surface, b_smooth) = if key_b & WALL != 0 {
+        let (b_surface, b_sphere) = if key_b & WALL != 0 {
             (self.model.boundaries[(key_b ^ WALL) as usize].surface, true)
         } else {
             let b = &self.model.types[key_b as usize];
@@ -234,7 +288,7 @@ impl<'a> PairSurfaces<'a> {
         PairSurface {
             friction,
             restitution: restitution.apply(a.surface.restitution, b_surface.restitution),
-            smooth_spheres: friction == 0.0 && a.is_plain_sphere() && b_smooth,
+            spheres: a.is_plain_sphere() && b_sphere,
         }
     }
 }

@@ -20,6 +20,14 @@ use crate::math::{Real, Vec3};
 pub struct Coulomb;
 
 impl ImpactLaw for Coulomb {
+    fn is_frictionless_at_zero(&self) -> bool {
+        true
+    }
+
+    fn is_dry_friction(&self) -> bool {
+        true
+    }
+
     fn name(&self) -> &str {
         "coulomb"
     }

@@ -11,6 +11,10 @@ use super::{Encounter, ImpactLaw, Impulse};
 pub struct Frictionless;
 
 impl ImpactLaw for Frictionless {
+    fn is_frictionless_at_zero(&self) -> bool {
+        true
+    }
+
     fn name(&self) -> &str {
         "frictionless"
     }

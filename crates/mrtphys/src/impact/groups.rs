@@ -19,7 +19,8 @@ pub(super) fn answer_in_groups(recipe: &Recipe<'_>, state: &mut State, work: &mu
     for group in groups(recipe, state, &contacts.list) {
         let points: usize = group.iter().map(|&c| manifold(&contacts.list[c], &contacts.points).len()).sum();
         if points == 1 {
-            answer_one(recipe, state, work, ledger, &contacts.list[group[0]], &mut pairs);
+            let only = (&contacts.list[group[0]], &contacts.points[..]);
+            answer_one(recipe, state, work, ledger, only, &mut pairs);
         } else {
             let chosen: Vec<&Contact> = group.iter().map(|&c| &contacts.list[c]).collect();
             reflect_group(recipe, state, work, ledger, (&chosen, &contacts.points), &mut pairs);

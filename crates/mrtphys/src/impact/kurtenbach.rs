@@ -68,6 +68,10 @@ fn guarded(e: &Encounter, direction: impl FnOnce(&Encounter) -> Option<Vec3>) ->
 pub struct Kurtenbach;
 
 impl ImpactLaw for Kurtenbach {
+    fn is_frictionless_at_zero(&self) -> bool {
+        true
+    }
+
     fn name(&self) -> &str {
         "kurtenbach"
     }
@@ -107,6 +111,10 @@ impl KurtenbachLiteral {
 }
 
 impl ImpactLaw for KurtenbachLiteral {
+    fn is_frictionless_at_zero(&self) -> bool {
+        true
+    }
+
     fn name(&self) -> &str {
         "kurtenbach-literal"
     }
@@ -129,6 +137,10 @@ impl ImpactLaw for KurtenbachLiteral {
 pub struct VelocityWeights;
 
 impl ImpactLaw for VelocityWeights {
+    fn is_frictionless_at_zero(&self) -> bool {
+        true
+    }
+
     fn name(&self) -> &str {
         "velocity"
     }

@@ -12,6 +12,7 @@ pub mod sequential;
 pub mod reflection;
 pub(crate) mod answer;
 pub(crate) mod groups;
+mod area;
 mod delassus;
 mod cone;
 #[cfg(test)]
@@ -181,6 +182,18 @@ pub trait ImpactLaw: Send + Sync + std::fmt::Debug {
 
     /// The impulse; `None`: the pair is left alone.
     fn impulse(&self, encounter: &Encounter) -> Option<Impulse>;
+
+    /// Whether a pair without friction gets exactly the frictionless impulse -(1 + e) (v12 . n)/B(n) n, as in all laws of the
+    /// thesis: smooth spheres are then answered without asking.
+    fn is_frictionless_at_zero(&self) -> bool {
+        false
+    }
+
+    /// Whether the law is dry friction: a tangential impulse of at most the friction coefficient times the normal one. Contact
+    /// areas that come to rest are then answered corner by corner at once.
+    fn is_dry_friction(&self) -> bool {
+        false
+    }
 
     /// Whether [`Encounter::persistent`] must be known: the state then remembers which pairs were in contact.
     fn needs_contact_memory(&self) -> bool {

@@ -11,6 +11,10 @@ use crate::math::{Real, Vec3};
 pub struct Rough;
 
 impl ImpactLaw for Rough {
+    fn is_frictionless_at_zero(&self) -> bool {
+        true
+    }
+
     fn name(&self) -> &str {
         "rough"
     }

@@ -51,12 +51,7 @@ pub(crate) fn write(model: &Model, state: &State, books: &Books, order: &[u32]) 
 
 fn write_books(out: &mut Writer, books: &Books) {
     books.ledger.entries().into_iter().for_each(|(_, value)| out.real(value));
-    let t = &books.totals;
-    for count in
-        [t.sphere_tests, t.detect_calls, t.contacts, t.impacts, t.fallbacks, t.projections, t.undecided, t.quarantined]
-    {
-        out.word(count);
-    }
+    books.totals.to_array().into_iter().for_each(|count| out.word(count));
     out.word(u64::from(books.initial.is_some()));
     let initial = books.initial.unwrap_or_default();
     [initial.linear, initial.rotational, initial.potential].into_iter().for_each(|e| out.real(e));
@@ -151,17 +146,7 @@ fn read_books(input: &mut Reader<'_>) -> Result<Books> {
     for count in &mut c {
         *count = input.word()?;
     }
-    let totals = Counters {
-        sphere_tests: c[0],
-        detect_calls: c[1],
-        contacts: c[2],
-        impacts: c[3],
-        wall_impacts: c[4],
-        fallbacks: c[5],
-        projections: c[6],
-        undecided: c[7],
-        quarantined: c[8],
-    };
+    let totals = Counters::from_array(c);
     let known = input.word()? == 1;
     let initial = Energy { linear: input.real()?, rotational: input.real()?, potential: input.real()? };
     Ok(Books { ledger, totals, initial: known.then_some(initial), largest_step: input.real()? })
