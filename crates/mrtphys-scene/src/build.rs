@@ -36,6 +36,11 @@ impl Scene {
     /// what, and where.
     pub fn build(&self) -> Result<Loaded, Diagnostics> {
         let mut found = Findings::default();
+        // The description may have been made or changed by a program, so what reading has checked is checked again.
+        parse::check_count(&self.contents, &mut found);
+        if !found.list.is_empty() {
+            return Err(parse::report(&self.source, found));
+        }
         let mut names = Names::of(self, &mut found);
         let world = match World::new(self.settings.clone()) {
             Ok(world) => world,

@@ -7,6 +7,7 @@ use crate::source::Span;
 use crate::table::TableRows;
 use mrtphys::id::{BodyId, BoundaryId};
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
 /// The faces of a box, in order.
@@ -25,6 +26,8 @@ pub struct Names {
     boundary_ids: Vec<BoundaryId>,
     boundary_names: Vec<String>,
     by_name: BTreeMap<String, Named>,
+    /// the groups whose bodies have names of their own
+    named_tables: Vec<u32>,
 }
 
 /// What a name stands for.
@@ -126,6 +129,9 @@ impl Names {
             bodies += group.count;
             let what = Named::Group(names.groups.len() as u32);
             names.enter(content.name().to_string(), what, content.span(), found);
+            if let GroupKind::NamedTable(..) = group.kind {
+                names.named_tables.push(names.groups.len() as u32);
+            }
             names.groups.push(group);
         }
         for b in &scene.boundaries {
@@ -136,10 +142,11 @@ impl Names {
     }
 
     fn enter(&mut self, name: String, what: Named, span: Span, found: &mut Findings) {
-        if self.by_name.contains_key(&name) {
-            found.push(span, format!("the name '{name}' is there twice"));
-        } else {
-            self.by_name.insert(name, what);
+        match self.by_name.entry(name) {
+            Entry::Occupied(e) => found.push(span, format!("the name '{}' is there twice", e.key())),
+            Entry::Vacant(e) => {
+                e.insert(what);
+            }
         }
     }
 
@@ -178,12 +185,18 @@ impl Names {
                 let name = rows.names.get(i as usize);
                 let again = n > 0 && rows.names.get(sorted[n - 1] as usize) == name;
                 let elsewhere = self.by_name.contains_key(name) || self.generated(name).is_some();
-                let others = || self.groups.iter().filter(|g| g.named(name).is_some()).count() > 1;
+                let others = || self.in_tables(name).count() > 1;
                 if again || elsewhere || others() {
                     report(name);
                 }
             }
         }
+    }
+
+    /// The bodies of this name in tables that name theirs.
+    fn in_tables<'a>(&'a self, name: &'a str) -> impl Iterator<Item = usize> + 'a {
+        let groups = self.named_tables.iter().map(|&g| &self.groups[g as usize]);
+        groups.filter_map(move |g| g.named(name).map(|i| g.first + i))
     }
 
     /// The body whose name is made from its place.
@@ -222,9 +235,7 @@ impl Names {
                 matches!(group.kind, GroupKind::Single).then_some(group.first)
             }
             Some(_) => None,
-            None => self
-                .generated(name)
-                .or_else(|| self.groups.iter().find_map(|g| g.named(name).map(|i| g.first + i))),
+            None => self.generated(name).or_else(|| self.in_tables(name).next()),
         }
     }
 

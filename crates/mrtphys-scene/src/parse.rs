@@ -206,12 +206,17 @@ fn contents(r: &Record, found: &mut Findings) -> Vec<Content> {
     all.extend(r.tables("lattice").iter().enumerate().map(|(i, l)| Content::Lattice(lattice(i, l, found))));
     all.extend(r.tables("body_table").iter().enumerate().map(|(i, t)| Content::Table(body_table(i, t))));
     all.sort_by_key(|c| c.span().start);
+    check_count(&all, found);
+    all
+}
+
+/// A scene may not hold more than [`MOST_BODIES`]; said before any of them is made.
+pub(crate) fn check_count(all: &[Content], found: &mut Findings) {
     let bodies = all.iter().map(Content::count).fold(0, u64::saturating_add);
     if bodies > MOST_BODIES {
         let last = all.last().map_or(Span::default(), Content::span);
         found.push(last, format!("scene: {bodies} bodies are more than the {MOST_BODIES} that a scene may hold"));
     }
-    all
 }
 
 fn name_of(r: &Record, kind: &str, place: usize) -> String {

@@ -63,7 +63,7 @@ impl Content {
     pub fn count(&self) -> u64 {
         match self {
             Content::Body(_) => 1,
-            Content::Lattice(l) => l.count.iter().map(|&n| u64::from(n)).product(),
+            Content::Lattice(l) => l.count.iter().fold(1, |n: u64, &c| n.saturating_mul(c.into())),
             Content::Table(t) => t.rows.len() as u64,
         }
     }
@@ -429,12 +429,7 @@ pub struct Camera {
 
 impl Default for Camera {
     fn default() -> Camera {
-        Camera {
-            eye: Vec3::new(2.0, 1.5, 3.0),
-            look_at: Vec3::splat(0.5),
-            up: Vec3::new(0.0, 1.0, 0.0),
-            fov_deg: 45.0,
-        }
+        Camera { eye: Vec3::new(2.0, 1.5, 3.0), look_at: Vec3::splat(0.5), up: Vec3::new(0.0, 1.0, 0.0), fov_deg: 45.0 }
     }
 }
 

@@ -45,7 +45,8 @@ fn the_example_of_the_contract_is_read_and_built() {
 
     let ball = loaded.world.body(loaded.names.body("ball").expect("ball")).expect("a body");
     assert_eq!(ball.position, Vec3::splat(0.5));
-    assert_eq!((ball.velocity, ball.angular_velocity), (Vec3::X, Vec3::new(0.0, 0.0, 3.0)));
+    assert_eq!(ball.velocity, Vec3::X);
+    assert!((ball.angular_velocity - Vec3::new(0.0, 0.0, 3.0)).max_abs() < 1e-15);
     // Values on the body win over its material.
     assert_eq!((ball.mass, ball.surface.friction, ball.surface.restitution), (1.0, 0.0, 1.0));
     let rubber = loaded.world.body(loaded.names.body("body_table0[0]").expect("a body")).expect("a body");
@@ -74,7 +75,9 @@ fn every_shape_is_built() {
         ("{ kind = 'quadrangle', points = [[0,0,0], [1,0,0], [1,1,0], [0,1,0]] }", 0.0),
     ];
     for (shape, volume) in shapes {
-        let text = format!("format = 1\n[[body]]\nshape = {shape}\nposition = [1, 2, 3]\naxis_angle = {{ axis = [0, 0, 2], angle_deg = 90 }}\n");
+        let text = format!(
+            "format = 1\n[[body]]\nshape = {shape}\nposition = [1, 2, 3]\naxis_angle = {{ axis = [0, 0, 2], angle_deg = 90 }}\n"
+        );
         let loaded = read(&text).and_then(|s| s.build()).unwrap_or_else(|e| panic!("{e}"));
         let body = loaded.world.body(loaded.names.body("body0").expect("a name")).expect("a body");
         assert!((body.volume - volume).abs() < 1e-12, "{shape}: {}", body.volume);
@@ -189,7 +192,8 @@ material = 'steel'
     let bodies: Vec<_> = loaded.world.bodies().map(|id| loaded.world.body(id).expect("a body")).collect();
     assert_eq!(bodies.iter().map(|b| b.mass).collect::<Vec<_>>(), [8000.0, 10.0, 1.0, f64::INFINITY]);
     assert_eq!(bodies.iter().map(|b| b.surface.friction).collect::<Vec<_>>(), [0.5, 0.25, 0.0, 0.5]);
-    let modes: Vec<_> = bodies.iter().map(|b| (b.surface.friction_combine.name(), b.surface.restitution_combine.name())).collect();
+    let modes: Vec<_> =
+        bodies.iter().map(|b| (b.surface.friction_combine.name(), b.surface.restitution_combine.name())).collect();
     assert_eq!(
         modes,
         [("multiply", "average"), ("maximum", "average"), ("multiply", "multiply"), ("multiply", "average")]
@@ -243,7 +247,10 @@ fn unknown_keys_and_values_get_a_suggestion() {
             "scene.toml:4:28: body 'ball': shape: unknown key 'radus', did you mean 'radius'?",
         ],
     );
-    assert_wrong(&format!("{BALL}    velocty = [1, 0, 0]\n"), &["scene.toml:5:5: body 'ball': unknown key 'velocty', did you mean 'velocity'?"]);
+    assert_wrong(
+        &format!("{BALL}    velocty = [1, 0, 0]\n"),
+        &["scene.toml:5:5: body 'ball': unknown key 'velocty', did you mean 'velocity'?"],
+    );
     assert_wrong("format = 1\n[[bodies]]\n", &["scene.toml:2:3: scene: unknown key 'bodies', did you mean 'body'?"]);
     assert_wrong(
         "format = 1\n[simulation]\nfriction_law = 'couloumb'\nfps = 1.5\n",
@@ -268,7 +275,9 @@ fn what_this_version_does_not_have_is_refused_by_name() {
         let text = format!("format = 1\n[[body]]\nshape = {{ kind = '{shape}', radius = 1 }}\n");
         assert_wrong(&text, &[&format!("scene.toml:3:18: body 'body0': shape.kind: '{shape}': not in this version")]);
     }
-    for (key, value, column) in [("algorithm", "event-driven", 13), ("algorithm", "rollback", 13), ("broad_phase", "bvh", 15)] {
+    for (key, value, column) in
+        [("algorithm", "event-driven", 13), ("algorithm", "rollback", 13), ("broad_phase", "bvh", 15)]
+    {
         let text = format!("format = 1\n[simulation]\n{key} = '{value}'\n");
         assert_wrong(&text, &[&format!("scene.toml:3:{column}: simulation: {key}: '{value}': not in this version")]);
     }
@@ -288,18 +297,42 @@ fn wrong_types_ranges_and_missing_keys_name_object_field_and_place() {
     );
     assert_wrong("", &["scene.toml:1:1: scene: key 'format' is missing"]);
     assert_wrong("format = 2\n", &["scene.toml:1:10: scene: format = 2 is out of range: 1 to 1"]);
-    assert_wrong("format = 1\n[body]\n", &["scene.toml:2:1: scene: body: expected a list of tables, found a table: write [[body]] instead of [body]"]);
-    assert_wrong(&format!("{BALL}mass = 1\ndensity = 1\n"), &["scene.toml:6:1: body 'ball': 'mass' and 'density' exclude each other"]);
-    assert_wrong(&format!("{BALL}mass = 1\nfixed = true\n"), &["scene.toml:5:8: body 'ball': mass: a fixed body has infinite mass; leave 'mass' out"]);
-    assert_wrong(&format!("{BALL}material = 'gold'\n"), &["scene.toml:5:12: body 'ball': material: there is no material 'gold'"]);
-    assert_wrong(&format!("{BALL}color = 'red'\n"), &["scene.toml:5:9: body 'ball': color: 'red' is not a color, expected '#rrggbb'"]);
-    assert_wrong("format = 1\n[[lattice]]\ncount = [2, 0, 2]\nbody = []\n", &[
-        "scene.toml:3:13: lattice 'lattice0': count = 0 is out of range: 1 to 10000000",
-        "scene.toml:4:8: lattice 'lattice0': body: expected at least 1 table(s), found 0",
-    ]);
-    assert_wrong(&format!("{BALL}friction = 2\n"), &["scene.toml:5:12: body 'ball': friction = 2.0 is out of range: 0 to 1 for the friction law 'kurtenbach'"]);
+    assert_wrong(
+        "format = 1\n[body]\n",
+        &["scene.toml:2:1: scene: body: expected a list of tables, found a table: write [[body]] instead of [body]"],
+    );
+    assert_wrong(
+        &format!("{BALL}mass = 1\ndensity = 1\n"),
+        &["scene.toml:6:1: body 'ball': 'mass' and 'density' exclude each other"],
+    );
+    assert_wrong(
+        &format!("{BALL}mass = 1\nfixed = true\n"),
+        &["scene.toml:5:8: body 'ball': mass: a fixed body has infinite mass; leave 'mass' out"],
+    );
+    assert_wrong(
+        &format!("{BALL}material = 'gold'\n"),
+        &["scene.toml:5:12: body 'ball': material: there is no material 'gold'"],
+    );
+    assert_wrong(
+        &format!("{BALL}color = 'red'\n"),
+        &["scene.toml:5:9: body 'ball': color: 'red' is not a color, expected '#rrggbb'"],
+    );
+    assert_wrong(
+        "format = 1\n[[lattice]]\ncount = [2, 0, 2]\nbody = []\n",
+        &[
+            "scene.toml:3:13: lattice 'lattice0': count = 0 is out of range: 1 to 10000000",
+            "scene.toml:4:8: lattice 'lattice0': body: expected at least 1 table(s), found 0",
+        ],
+    );
+    assert_wrong(
+        &format!("{BALL}friction = 2\n"),
+        &["scene.toml:5:12: body 'ball': friction = 2.0 is out of range: 0 to 1 for the friction law 'kurtenbach'"],
+    );
     assert_wrong(&format!("{BALL}friction = 2\n[simulation]\nfriction_law = 'coulomb'\n"), &[]);
-    assert_wrong("format = 1\n[[force_field]]\nkind = 'point'\nstrength = 1\n", &["scene.toml:2:1: force_field 0: key 'position' or 'body' is missing"]);
+    assert_wrong(
+        "format = 1\n[[force_field]]\nkind = 'point'\nstrength = 1\n",
+        &["scene.toml:2:1: force_field 0: key 'position' or 'body' is missing"],
+    );
 }
 
 #[test]
@@ -328,22 +361,26 @@ fn what_only_the_world_can_tell_names_the_object_too() {
         &["scene.toml:6:1: the name 'gas[1,0,1]' is that of a body of a lattice or table"],
     );
     assert_wrong(
-        &format!("{BALL}[[boundary]]\nname = 'tank'\n[[boundary]]\nname = 'tank.+y'\nkind = 'plane'\nnormal = [0, 1, 0]\n"),
+        &format!(
+            "{BALL}[[boundary]]\nname = 'tank'\n[[boundary]]\nname = 'tank.+y'\nkind = 'plane'\nnormal = [0, 1, 0]\n"
+        ),
         &["scene.toml:7:1: the name 'tank.+y' is there twice"],
     );
 }
 
 #[test]
 fn the_line_is_shown_with_a_caret_below_the_place() {
-    let e = read("format = 1\n[[body]]\nname = 'Bälle'\n\tshäpe = 1\nshape = { kind = 'sphere', radius = 1 }\n").expect_err("wrong");
+    let e = read("format = 1\n[[body]]\nname = 'Bälle'\n\t'shäpe' = 1\nshape = { kind = 'sphere', radius = 1 }\n")
+        .expect_err("wrong");
     // Columns are characters; the tab is kept, so that the caret is right at any tab width.
     assert_eq!(
         read("format = 1\ntitle = 'ä'  x\n").expect_err("wrong").first().map(|d| d.headline()),
         Some("scene.toml:2:14: syntax: unexpected key or value, expected newline, `#`".into())
     );
     let text = e.to_string();
-    assert!(text.contains("scene.toml:4:3: "), "{text}");
-    let e = read("format = 1\n[[body]]\nname = 'ball'\n\tshape = { kind = 'sphere', radus = 0.1, radius = 1 }\n").expect_err("wrong");
+    assert!(text.contains("scene.toml:4:2: body 'Bälle': unknown key 'shäpe', did you mean 'shape'?\n"), "{text}");
+    let e = read("format = 1\n[[body]]\nname = 'ball'\n\tshape = { kind = 'sphere', radus = 0.1, radius = 1 }\n")
+        .expect_err("wrong");
     assert_eq!(
         e.to_string(),
         "scene.toml:4:29: body 'ball': shape: unknown key 'radus', did you mean 'radius'?\n  |\n4 | \tshape = { kind = 'sphere', radus = 0.1, radius = 1 }\n  | \t                           ^^^^^"

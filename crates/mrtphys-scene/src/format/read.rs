@@ -194,14 +194,7 @@ fn case_of(
 }
 
 /// Missing keys, and keys that exclude each other.
-fn completeness(
-    spec: &Table,
-    case: Option<&'static Case>,
-    t: &DeTable,
-    span: Span,
-    here: &Here,
-    found: &mut Findings,
-) {
+fn completeness(spec: &Table, case: Option<&'static Case>, t: &DeTable, span: Span, here: &Here, found: &mut Findings) {
     for key in spec.keys_with(case).filter(|k| k.required && !t.contains_key(k.name)) {
         found.push(span, here.remark(format!("key '{}' is missing", key.name)));
     }
@@ -300,7 +293,9 @@ fn checked(
             DeValue::Array(a) => return tables(key.name, of, least, a, here, found).map(|t| Some(Val::Tables(t))),
             DeValue::Table(_) => {
                 let name = key.name;
-                return Err(format!("expected a list of tables, found a table: write [[{name}]] instead of [{name}]").into());
+                return Err(
+                    format!("expected a list of tables, found a table: write [[{name}]] instead of [{name}]").into()
+                );
             }
             other => return Err(value::wrong_type("a list of tables", other)),
         },

@@ -30,7 +30,8 @@ const fn choice(names: fn() -> Vec<&'static str>) -> Kind {
 const SURFACE: &[Key] = &[
     Key::new("friction", Number(FRICTION), "friction coefficient, 0 to 1; for the law 'coulomb' any size").or("0.0"),
     Key::new("restitution", Number(UNIT), "coefficient of restitution").or("1.0"),
-    Key::new("friction_combine", choice(names!(Combine)), "how friction combines with the partner's").or("\"multiply\""),
+    Key::new("friction_combine", choice(names!(Combine)), "how friction combines with the partner's")
+        .or("\"multiply\""),
     Key::new("restitution_combine", choice(names!(Combine)), "how restitution combines with the partner's")
         .or("\"multiply\""),
 ];
@@ -200,7 +201,7 @@ static FLOW_FIELD: Table = Table {
         Case {
             name: "uniform",
             doc: "The same velocity everywhere.",
-            keys: &[Key::new("velocity", Vector(ANY), "velocity [m/s]").required()],
+            keys: &[Key::new("velocity", Vector(ANY), "velocity [m/s]").or("[0, 0, 0]")],
             exactly_one: &[],
         },
         Case {
@@ -334,12 +335,7 @@ static BOUNDARY: Table = Table {
             ],
             exactly_one: &[],
         },
-        Case {
-            name: "half-space",
-            doc: "Everything behind a plane is forbidden.",
-            keys: PLANE,
-            exactly_one: &[],
-        },
+        Case { name: "half-space", doc: "Everything behind a plane is forbidden.", keys: PLANE, exactly_one: &[] },
         Case { name: "plane", doc: "A plane that reflects from both sides.", keys: PLANE, exactly_one: &[] },
         Case {
             name: "quadrangle",

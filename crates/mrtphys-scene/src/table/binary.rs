@@ -44,7 +44,9 @@ fn read_from(mut input: impl Read, length: u64, reading: &Reading) -> Result<Tab
     for i in 0..materials {
         let n = u32_of(&bytes(4)?);
         if n == 0 || n > LONGEST_NAME {
-            return Err(reading.fail(format!("material {i}: the name is {n} bytes long, 1 to {LONGEST_NAME} are allowed")));
+            return Err(
+                reading.fail(format!("material {i}: the name is {n} bytes long, 1 to {LONGEST_NAME} are allowed"))
+            );
         }
         let name = String::from_utf8(bytes(n as usize)?)
             .map_err(|_| reading.fail(format!("material {i}: the name is not UTF-8")))?;

@@ -163,7 +163,10 @@ fn row(
     let number = |name: &str, default: Option<f64>| match (field(name), default) {
         (Some((at, text)), _) => match text.parse::<f64>() {
             Ok(x) if x.is_finite() => Ok(x),
-            _ => Err((*at, format!("{name}: '{}' is not a finite number", text.escape_debug().take(24).collect::<String>()))),
+            _ => Err((
+                *at,
+                format!("{name}: '{}' is not a finite number", text.escape_debug().take(24).collect::<String>()),
+            )),
         },
         (None, Some(default)) => Ok(default),
         (None, None) => Err((columns[column(name)].map_or(0, |i| fields[i].0), format!("{name} is missing"))),

@@ -437,6 +437,10 @@ fn checked_orientation(object: &str, q: Quat) -> Result<Quat> {
     if !q.is_finite() {
         return Err(Error::NonFinite { object: object.into(), field: "orientation" });
     }
+    // A unit quaternion to round-off is kept bit for bit, so that a state that was written down reads back as it was.
+    if (q.dot(q) - 1.0).abs() <= 16.0 * Real::EPSILON {
+        return Ok(q);
+    }
     q.try_normalize().ok_or(Error::OutOfRange {
         object: object.into(),
         field: "orientation",

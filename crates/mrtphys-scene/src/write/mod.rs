@@ -1,10 +1,12 @@
 //! From a world back to scene text.
 
+mod values;
+
 use crate::build::{Loaded, row_substance};
 use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::scene::{
-    BodyDesc, BoundaryDesc, BoundaryKind, Camera, Content, FlowKind, ForceKind, LatticeDesc, Light, MassDesc,
-    Placement, Scene, ScopeDesc, ShapeDesc, SubstanceDesc, SurfaceDesc, Turning,
+    BodyDesc, BoundaryDesc, BoundaryKind, Camera, Content, LatticeDesc, Light, MassDesc, Placement, Scene, ScopeDesc,
+    SubstanceDesc, SurfaceDesc, Turning,
 };
 use crate::source::LARGEST_TEXT;
 use mrtphys::def::{BroadPhaseKind, Settings, Surface};
@@ -12,7 +14,8 @@ use mrtphys::id::BodyId;
 use mrtphys::math::{Quat, Real, Vec3};
 use mrtphys::world::Body;
 use std::borrow::Cow;
-use std::fmt::{Display, Write as _};
+use std::fmt::Write as _;
+use values::{Number, Pairs, Text, Vector, flow, force, points, substance, surface, texts};
 
 /// Scene text of a world as it is now. What has not changed since the scene was built is written as it was described; a
 /// body that has changed is written with its state, bit for bit; a lattice or body table of which a body has changed is
@@ -27,10 +30,8 @@ pub fn to_toml(loaded: &Loaded) -> Result<String, Diagnostics> {
     for i in 0..loaded.scene.contents.len() {
         w.content(i);
         if w.out.len() as u64 > LARGEST_TEXT {
-            let message = format!(
-                "the scene as text would be larger than {} MiB; write a snapshot instead",
-                LARGEST_TEXT >> 20
-            );
+            let message =
+                format!("the scene as text would be larger than {} MiB; write a snapshot instead", LARGEST_TEXT >> 20);
             return Err(Diagnostic::without_place(&loaded.scene.source.name, message).into());
         }
     }
@@ -51,124 +52,6 @@ struct Writer<'a> {
     lattices: u64,
 }
 
-// How values are written. `{:?}` of a number is the shortest text that reads back bit for bit.
-
-struct Vector(Vec3);
-
-impl Display for Vector {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Vec3 { x, y, z, .. } = self.0;
-        write!(f, "[{x:?}, {y:?}, {z:?}]")
-    }
-}
-
-struct Number(Real);
-
-impl Display for Number {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{:?}", self.0)
-    }
-}
-
-struct Text<'a>(&'a str);
-
-impl Display for Text<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_char('"')?;
-        for c in self.0.chars() {
-            match c {
-                '"' => f.write_str("\\\"")?,
-                '\\' => f.write_str("\\\\")?,
-                c if c.is_control() => write!(f, "\\U{:08X}", c as u32)?,
-                c => f.write_char(c)?,
-            }
-        }
-        f.write_char('"')
-    }
-}
-
-fn points(points: &[Vec3]) -> String {
-    format!("[{}]", points.iter().map(|p| Vector(*p).to_string()).collect::<Vec<_>>().join(", "))
-}
-
-fn texts<'a>(all: impl Iterator<Item = Cow<'a, str>>) -> String {
-    format!("[{}]", all.map(|t| Text(&t).to_string()).collect::<Vec<_>>().join(", "))
-}
-
-/// `key = value` pairs, for a table of its own or for one in a line.
-#[derive(Default)]
-struct Pairs(Vec<(&'static str, String)>);
-
-impl Pairs {
-    fn add(&mut self, key: &'static str, value: impl Display) {
-        self.0.push((key, value.to_string()));
-    }
-
-    /// Adds what is not the default.
-    fn differing<T: PartialEq>(&mut self, key: &'static str, value: T, default: T, show: impl FnOnce(T) -> String) {
-        if value != default {
-            self.0.push((key, show(value)));
-        }
-    }
-
-    fn lines(&self) -> String {
-        self.0.iter().fold(String::new(), |mut s, (k, v)| {
-            let _ = writeln!(s, "{k} = {v}");
-            s
-        })
-    }
-
-    fn line(&self) -> String {
-        format!("{{ {} }}", self.0.iter().map(|(k, v)| format!("{k} = {v}")).collect::<Vec<_>>().join(", "))
-    }
-}
-
-fn shape(s: &ShapeDesc) -> String {
-    let mut p = Pairs::default();
-    let kind = |k| Text(k).to_string();
-    match s {
-        ShapeDesc::Sphere { radius } => {
-            p.add("kind", kind("sphere"));
-            p.add("radius", Number(*radius));
-        }
-        ShapeDesc::Tetrahedron { circumradius } => {
-            p.add("kind", kind("tetrahedron"));
-            p.add("circumradius", Number(*circumradius));
-        }
-        ShapeDesc::TetrahedronPoints(four) => {
-            p.add("kind", kind("tetrahedron"));
-            p.add("points", points(four));
-        }
-        ShapeDesc::Cuboid { size } => {
-            p.add("kind", kind("box"));
-            p.add("size", Vector(*size));
-        }
-        ShapeDesc::Polyhedron { points: all, faces } => {
-            p.add("kind", kind("polyhedron"));
-            p.add("points", points(all));
-            p.add("faces", format!("{faces:?}"));
-        }
-        ShapeDesc::ConvexHull { points: all } => {
-            p.add("kind", kind("convex-hull"));
-            p.add("points", points(all));
-        }
-        ShapeDesc::Quadrangle(four) => {
-            p.add("kind", kind("quadrangle"));
-            p.add("points", points(four));
-        }
-    }
-    p.line()
-}
-
-fn surface(p: &mut Pairs, s: &SurfaceDesc) {
-    let combine = |c: mrtphys::def::Combine| Text(c.name()).to_string();
-    let number = |x: Real| Number(x).to_string();
-    p.0.extend(s.friction.map(|x| ("friction", number(x))));
-    p.0.extend(s.restitution.map(|x| ("restitution", number(x))));
-    p.0.extend(s.friction_combine.map(|c| ("friction_combine", combine(c))));
-    p.0.extend(s.restitution_combine.map(|c| ("restitution_combine", combine(c))));
-}
-
 fn explicit(s: &Surface) -> SurfaceDesc {
     SurfaceDesc {
         friction: Some(s.friction),
@@ -176,19 +59,6 @@ fn explicit(s: &Surface) -> SurfaceDesc {
         friction_combine: Some(s.friction_combine),
         restitution_combine: Some(s.restitution_combine),
     }
-}
-
-fn substance(p: &mut Pairs, s: &SubstanceDesc) {
-    p.add("shape", shape(&s.shape));
-    match s.mass {
-        MassDesc::Unset => {}
-        MassDesc::Value(m) => p.add("mass", Number(m)),
-        MassDesc::Density(d) => p.add("density", Number(d)),
-        MassDesc::Fixed => p.add("fixed", true),
-    }
-    p.0.extend(s.material.as_ref().map(|m| ("material", Text(m).to_string())));
-    surface(p, &s.surface);
-    p.0.extend(s.color.map(|c| ("color", Text(&c.to_string()).to_string())));
 }
 
 fn body_pairs(b: &BodyDesc) -> Pairs {
@@ -345,8 +215,7 @@ impl Writer<'_> {
             let count = if matches!(b.kind, BoundaryKind::Box { .. }) { 6 } else { 1 };
             let ids = &loaded.names.boundaries()[first..first + count];
             first += count;
-            let described =
-                crate::build::effective_surface(&loaded.scene.materials, b.material.as_deref(), &b.surface);
+            let described = crate::build::effective_surface(&loaded.scene.materials, b.material.as_deref(), &b.surface);
             let surfaces: Vec<Surface> =
                 ids.iter().map(|&id| loaded.world.boundary(id).map_or(described, |view| view.surface)).collect();
             if surfaces.iter().all(|s| *s == described) {
@@ -485,57 +354,5 @@ fn simulation(scene: &Scene, s: &Settings) -> Pairs {
     name("integrator", s.integrator.name(), d.integrator.name());
     p.differing("viscous_spin", s.viscous_spin, false, |v| v.to_string());
     p.add("seed", scene.seed);
-    p
-}
-
-fn force(kind: &ForceKind, carried: bool) -> Pairs {
-    let mut p = Pairs::default();
-    match *kind {
-        ForceKind::EarthGravity { g, direction } => {
-            p.add("kind", Text("earth-gravity"));
-            p.add("g", Number(g));
-            p.differing("direction", direction, Vec3::new(0.0, -1.0, 0.0), |d| Vector(d).to_string());
-        }
-        ForceKind::Uniform { acceleration } => {
-            p.add("kind", Text("uniform"));
-            p.add("acceleration", Vector(acceleration));
-        }
-        ForceKind::Point { position, strength, exponent } => {
-            p.add("kind", Text("point"));
-            if !carried {
-                p.add("position", Vector(position));
-            }
-            p.add("strength", Number(strength));
-            p.add("exponent", exponent);
-        }
-        ForceKind::Vortex { point, axis, strength } => {
-            p.add("kind", Text("vortex"));
-            p.add("point", Vector(point));
-            p.add("axis", Vector(axis));
-            p.add("strength", Number(strength));
-        }
-    }
-    p
-}
-
-fn flow(kind: &FlowKind) -> Pairs {
-    let mut p = Pairs::default();
-    match *kind {
-        FlowKind::Uniform { velocity } => {
-            p.add("kind", Text("uniform"));
-            p.add("velocity", Vector(velocity));
-        }
-        FlowKind::Vortex { point, axis, circulation } => {
-            p.add("kind", Text("vortex"));
-            p.add("point", Vector(point));
-            p.add("axis", Vector(axis));
-            p.add("circulation", Number(circulation));
-        }
-        FlowKind::Sink { point, strength } => {
-            p.add("kind", Text("sink"));
-            p.add("point", Vector(point));
-            p.add("strength", Number(strength));
-        }
-    }
     p
 }
