@@ -1,2 +1,28 @@
 //! The `mrtphys` program.
-fn main() {}
+
+mod cli;
+mod choices;
+mod exit;
+mod interrupt;
+
+mod setup;
+mod plan;
+mod run;
+mod progress;
+
+mod output;
+mod binary;
+mod cast;
+mod report;
+mod json;
+mod events;
+mod trajectory;
+mod summary;
+
+mod check;
+mod list;
+mod bench;
+
+fn main() -> std::process::ExitCode {
+    cli::main()
+}
