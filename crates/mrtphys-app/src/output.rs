@@ -60,63 +60,60 @@ impl Stream {
 /// A file that appears as a whole or not at all: it is written beside its place and then renamed.
 pub struct Whole {
     path: PathBuf,
+    /// a device or a pipe, which cannot be renamed over: held open, for a reader takes its closing for the end
+    device: Option<File>,
 }
 
 impl Whole {
     /// Makes sure that the file can be written, without touching what is there.
     pub fn check(path: &Path) -> Outcome<Whole> {
-        let whole = Whole { path: path.to_path_buf() };
-        let tried = match whole.place() {
-            Place::Device => OpenOptions::new().write(true).open(path).map(drop),
-            Place::File(place) => {
-                let present =
-                    if place.exists() { OpenOptions::new().append(true).open(&place).map(drop) } else { Ok(()) };
-                present.and_then(|()| {
-                    let part = part_of(&place)?;
-                    File::create_new(&part)?;
-                    fs::remove_file(&part)
-                })
-            }
+        // A folder takes the ordinary way, where opening it says what is wrong.
+        let is_device = fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir());
+        let tried = if is_device {
+            OpenOptions::new().write(true).open(path).map(Some)
+        } else {
+            try_place(&place_of(path)).map(|()| None)
         };
-        tried.map_err(|e| wrong(path, &e))?;
-        Ok(whole)
+        let device = tried.map_err(|e| wrong(path, &e))?;
+        Ok(Whole { path: path.to_path_buf(), device })
     }
 
     /// Writes the file.
     pub fn write(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Outcome {
-        let written = match self.place() {
-            Place::Device => {
-                OpenOptions::new().write(true).open(&self.path).and_then(|file| fill(file, write).map(drop))
-            }
-            Place::File(place) => part_of(&place).and_then(|part| {
-                let done = File::create_new(&part)
-                    .and_then(|file| fill(file, write))
-                    .and_then(|file| file.sync_all())
-                    .and_then(|()| fs::rename(&part, &place));
-                if done.is_err() {
-                    let _ = fs::remove_file(&part);
-                }
-                done
-            }),
+        let written = match &self.device {
+            Some(device) => device.try_clone().and_then(|file| fill(file, write).map(drop)),
+            None => replace(&place_of(&self.path), write),
         };
         written.map_err(|e| stopped(&self.path, &e))
     }
-
-    fn place(&self) -> Place {
-        match fs::metadata(&self.path) {
-            // A folder takes the ordinary way, where opening it says what is wrong.
-            Ok(m) if !m.is_file() && !m.is_dir() => Place::Device,
-            // Through a symbolic link to the file that it names.
-            Ok(_) => Place::File(fs::canonicalize(&self.path).unwrap_or_else(|_| self.path.clone())),
-            Err(_) => Place::File(self.path.clone()),
-        }
-    }
 }
 
-enum Place {
-    /// a device or a pipe, which cannot be renamed over
-    Device,
-    File(PathBuf),
+/// The file that a path names, through symbolic links.
+fn place_of(path: &Path) -> PathBuf {
+    fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf())
+}
+
+/// Whether a file can be put here, and what is here can be written.
+fn try_place(place: &Path) -> io::Result<()> {
+    if place.exists() {
+        OpenOptions::new().append(true).open(place)?;
+    }
+    let part = part_of(place)?;
+    File::create_new(&part)?;
+    fs::remove_file(&part)
+}
+
+/// Puts a new file in a place; if that fails, what was there stays.
+fn replace(place: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let part = part_of(place)?;
+    let done = File::create_new(&part)
+        .and_then(|file| fill(file, write))
+        .and_then(|file| file.sync_all())
+        .and_then(|()| fs::rename(&part, place));
+    if done.is_err() {
+        let _ = fs::remove_file(&part);
+    }
+    done
 }
 
 fn fill(file: File, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<File> {
