@@ -51,7 +51,11 @@ fn the_gallery_gives_its_golden_hashes() {
         let (steps, first) = hash((name, source), None, 1).expect("the scene's own broad phase");
         writeln!(text, "{name} {steps} {first}").expect("text");
         for threads in [2, 8] {
-            assert_eq!(hash((name, source), None, threads).map(|h| h.1), Some(first.clone()), "{name} on {threads} threads");
+            assert_eq!(
+                hash((name, source), None, threads).map(|h| h.1),
+                Some(first.clone()),
+                "{name} on {threads} threads"
+            );
         }
         for kind in BROAD_PHASES {
             if let Some((_, other)) = hash((name, source), Some(kind), 2) {
