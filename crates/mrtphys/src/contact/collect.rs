@@ -1,10 +1,10 @@
 //! Stages 3 to 5: from bounds to candidates, from candidates to contacts, and into the order of response.
 
 use super::let_back::{LetBack, Standing};
+use super::memory::{pair_key, wall_key};
 use super::{Contact, Other};
 use crate::bounds::Ball;
 use crate::broad::BoundsView;
-use crate::def::ContactMode;
 use crate::math::{Mat3, Vec3};
 use crate::model::Model;
 use crate::narrow::{Placed, Touches};
@@ -49,7 +49,6 @@ pub fn collect(model: &Model, state: &State, let_back: &mut LetBack, work: &mut 
         let_back,
         balls: &work.balls,
         rotations: &work.rotations,
-        thesis_order: model.settings.contact == ContactMode::Thesis,
     };
     let contacts = &mut work.contacts;
     contacts.list.clear();
@@ -105,7 +104,6 @@ struct Scene<'a> {
     let_back: &'a LetBack,
     balls: &'a [Ball],
     rotations: &'a [Mat3],
-    thesis_order: bool,
 }
 
 impl Scene<'_> {
@@ -128,12 +126,7 @@ impl Scene<'_> {
         let (first, second) = (self.placed(a), self.placed(b));
         let start = block.touches.list.len();
         entry.call(&first, &second, &mut block.touches);
-        let key = if self.thesis_order {
-            (u64::from(low) << 32) | (1 << 31) | u64::from(high)
-        } else {
-            (u64::from(low) << 32) | u64::from(high)
-        };
-        self.emit(key, a, Other::Body(b), start, block);
+        self.emit(pair_key(low, high, self.model.settings.contact), a, Other::Body(b), start, block);
     }
 
     /// Contacts of a body and a boundary.
@@ -151,8 +144,7 @@ impl Scene<'_> {
         };
         let start = block.touches.list.len();
         entry.call(&first, &second, &mut block.touches);
-        let key = (u64::from(serial) << 32) | u64::from(wall) | if self.thesis_order { 0 } else { 1 << 63 };
-        self.emit(key, body, Other::Wall(wall), start, block);
+        self.emit(wall_key(serial, wall, self.model.settings.contact), body, Other::Wall(wall), start, block);
     }
 
     fn emit(&self, key: u64, a: u32, b: Other, start: usize, block: &mut Block) {

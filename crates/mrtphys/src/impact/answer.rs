@@ -2,11 +2,11 @@
 
 use super::{Encounter, Party};
 use crate::contact::collect::manifold;
-use crate::contact::{Contact, Other};
+use crate::contact::{Contact, ContactList, Other};
 use crate::def::ImpactMode;
 use crate::event::StepEvent;
 use crate::ledger::Ledger;
-use crate::math::{Real, Vec3};
+use crate::math::{Real, Vec3, max};
 use crate::model::{BodyType, Model};
 use crate::state::State;
 use crate::step::Recipe;
@@ -15,6 +15,10 @@ use crate::work::Work;
 /// A contact is at rest, not an impact, where it approaches no faster than the fields alone can have made it within this
 /// many steps: an inelastic pair then stays together instead of bouncing ever lower.
 const RESTING_STEPS: Real = 2.0;
+/// Sweeps over the contacts of piles at most; what is left is taken up in the next step.
+const SWEEPS: usize = 16;
+/// A contact in a pile is left alone below this part of the speed up to which it is at rest.
+const STILL: Real = 1.0 / 64.0;
 
 /// Answers the contacts of the step.
 pub(crate) fn answer(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, ledger: &mut Ledger) {
@@ -32,7 +36,41 @@ fn answer_in_order(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, ledg
     for contact in &contacts.list {
         answer_one(recipe, state, work, ledger, (contact, &contacts.points), &mut pairs);
     }
+    settle_piles(recipe, state, work, ledger, &contacts, &mut pairs);
     work.contacts = contacts;
+}
+
+/// What presses on an inelastic contact at rest comes through its neighbours, which were answered after it: its pair is
+/// asked again, without restitution, up and down the order, until all of the pile knows that it lies on something.
+/// Every such impulse takes energy away. Elastic contacts, and those fast enough to bounce, are answered once a step.
+fn settle_piles(
+    recipe: &Recipe<'_>,
+    state: &mut State,
+    work: &mut Work,
+    ledger: &mut Ledger,
+    contacts: &ContactList,
+    pairs: &mut PairSurfaces<'_>,
+) {
+    if work.accelerations.is_empty() {
+        return;
+    }
+    let inelastic: Vec<&Contact> = contacts.list.iter().filter(|c| pairs.of(c).restitution < 1.0).collect();
+    let count = inelastic.len();
+    for sweep in 0..SWEEPS {
+        let mut answered = false;
+        for i in 0..count {
+            let contact = inelastic[if sweep % 2 == 0 { count - 1 - i } else { i }];
+            let still = STILL * resting_speed(recipe.dt, &work.accelerations, contact);
+            let found = encounter(recipe, state, &work.accelerations, contact, pairs.of(contact));
+            if found.is_some_and(|e| e.restitution == 0.0 && e.approach() > still) {
+                answer_one(recipe, state, work, ledger, (contact, &contacts.points), pairs);
+                answered = true;
+            }
+        }
+        if !answered {
+            break;
+        }
+    }
 }
 
 /// Answers one contact with the law of its pair.
@@ -203,19 +241,23 @@ pub(super) fn encounter(
     if !(approach > 0.0) {
         return None;
     }
-    if surface.restitution < 1.0 && is_resting(recipe.dt, accelerations, contact, approach) {
+    if surface.restitution < 1.0 && approach <= resting_speed(recipe.dt, accelerations, contact) {
         encounter.restitution = 0.0;
     }
     Some(encounter)
 }
 
-fn is_resting(dt: Real, accelerations: &[Vec3], contact: &Contact, approach: Real) -> bool {
-    let of = |slot: u32| accelerations.get(slot as usize).copied().unwrap_or(Vec3::ZERO);
+/// The approach speed up to which a contact is at rest \[m/s\].
+///
+/// Inside a pile two neighbours are accelerated alike; what presses them together is that others hold one of them back, and
+/// that turns the pull of the fields into any direction. So the larger acceleration counts, wherever it points.
+pub(crate) fn resting_speed(dt: Real, accelerations: &[Vec3], contact: &Contact) -> Real {
+    let of = |slot: u32| accelerations.get(slot as usize).map_or(0.0, |a| a.length());
     let b = match contact.b {
         Other::Body(slot) => of(slot),
-        Other::Wall(_) => Vec3::ZERO,
+        Other::Wall(_) => 0.0,
     };
-    approach <= RESTING_STEPS * (of(contact.a) - b).dot(contact.normal) * dt
+    RESTING_STEPS * max(of(contact.a), b) * dt
 }
 
 fn party(model: &Model, state: &State, slot: u32, point: Vec3) -> Party {

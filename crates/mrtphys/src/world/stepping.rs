@@ -123,10 +123,12 @@ impl World {
 
     /// Everything that overlaps now by more than round-off, in order of response; touching is no overlap. For `check`.
     pub fn overlaps(&mut self) -> Vec<Overlap> {
+        let counters = self.work.counters;
         bounds::place(&self.model, &self.state, &mut self.work);
         collect::find_candidates(&self.model, &mut self.work);
         let mut let_back = self.state.let_back.clone();
         collect::collect(&self.model, &self.state, &mut let_back, &mut self.work);
+        self.work.counters = counters;
         let found = self.work.contacts.list.iter().filter(|c| {
             let size = self.state.lines[c.a as usize].radius.abs() + self.state.lines[c.a as usize].x.max_abs();
             c.depth > 64.0 * Real::EPSILON * size
