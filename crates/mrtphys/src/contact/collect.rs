@@ -43,13 +43,7 @@ pub fn find_candidates(model: &Model, work: &mut Work) {
 /// Asks the pair routines and sorts their contacts into the order of response.
 pub fn collect(model: &Model, state: &State, let_back: &mut LetBack, work: &mut Work) {
     settle_planes(model, state, let_back);
-    let scene = Scene {
-        model,
-        state,
-        let_back,
-        balls: &work.balls,
-        rotations: &work.rotations,
-    };
+    let scene = Scene { model, state, let_back, balls: &work.balls, rotations: &work.rotations };
     let contacts = &mut work.contacts;
     contacts.list.clear();
     contacts.points.clear();

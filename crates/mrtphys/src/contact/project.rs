@@ -12,7 +12,7 @@ use crate::step::Recipe;
 use crate::work::Work;
 
 /// Passes over the contacts: enough for a body held from several sides; what is left is taken up in the next step.
-const PASSES: usize = 4;
+const PASSES: usize = 16;
 
 /// Projects the overlaps out.
 pub(crate) fn project(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, ledger: &mut Ledger) {

@@ -16,7 +16,7 @@ use crate::work::Work;
 /// many steps: an inelastic pair then stays together instead of bouncing ever lower.
 const RESTING_STEPS: Real = 2.0;
 /// Sweeps over the contacts of piles at most; what is left is taken up in the next step.
-const SWEEPS: usize = 16;
+const SWEEPS: usize = 64;
 /// A contact in a pile is left alone below this part of the speed up to which it is at rest.
 const STILL: Real = 1.0 / 64.0;
 
@@ -40,9 +40,9 @@ fn answer_in_order(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, ledg
     work.contacts = contacts;
 }
 
-/// What presses on an inelastic contact at rest comes through its neighbours, which were answered after it: its pair is
-/// asked again, without restitution, up and down the order, until all of the pile knows that it lies on something.
-/// Every such impulse takes energy away. Elastic contacts, and those fast enough to bounce, are answered once a step.
+/// What presses on an inelastic contact comes through its neighbours, which may be answered after it: its pair is asked
+/// again, without restitution because it has bounced in this step already, up and down the order, until all of a pile knows
+/// that it lies on something. Every such impulse takes energy away. Elastic contacts are answered once a step.
 fn settle_piles(
     recipe: &Recipe<'_>,
     state: &mut State,
@@ -61,9 +61,10 @@ fn settle_piles(
         for i in 0..count {
             let contact = inelastic[if sweep % 2 == 0 { count - 1 - i } else { i }];
             let still = STILL * resting_speed(recipe.dt, &work.accelerations, contact);
-            let found = encounter(recipe, state, &work.accelerations, contact, pairs.of(contact));
-            if found.is_some_and(|e| e.restitution == 0.0 && e.approach() > still) {
-                answer_one(recipe, state, work, ledger, (contact, &contacts.points), pairs);
+            let surface = PairSurface { restitution: 0.0, ..pairs.of(contact) };
+            let found = encounter(recipe, state, &work.accelerations, contact, surface);
+            if let Some(found) = found.filter(|e| e.approach() > still) {
+                answer_found(recipe, state, work, ledger, (contact, &contacts.points), &found);
                 answered = true;
             }
         }
@@ -88,10 +89,23 @@ pub(super) fn answer_one(
         return bounce_smooth(recipe, state, work, contact);
     }
     let Some(found) = encounter(recipe, state, &work.accelerations, contact, surface) else { return };
+    answer_found(recipe, state, work, ledger, (contact, points), &found);
+}
+
+/// Answers an approach: as an area at rest, or as an impact.
+fn answer_found(
+    recipe: &Recipe<'_>,
+    state: &mut State,
+    work: &mut Work,
+    ledger: &mut Ledger,
+    (contact, points): (&Contact, &[Vec3]),
+    found: &Encounter,
+) {
+    let smooth = found.friction == 0.0 && recipe.law.is_frictionless_at_zero();
     if found.restitution == 0.0 && (smooth || recipe.law.is_dry_friction()) && contact.point_count > 1 {
-        return settle_area(recipe, state, work, ledger, (contact, points), &found);
+        return settle_area(recipe, state, work, ledger, (contact, points), found);
     }
-    respond(recipe, state, work, ledger, contact, &found);
+    respond(recipe, state, work, ledger, contact, found);
 }
 
 /// A contact area without restitution is answered at all its corners at once, so that the pressure finds its place in the
