@@ -5,8 +5,10 @@ use super::memory::{pair_key, wall_key};
 use super::{Contact, Other};
 use crate::bounds::Ball;
 use crate::broad::BoundsView;
+use crate::def::ContactMode;
 use crate::math::{Mat3, Vec3};
 use crate::model::Model;
+use crate::narrow::pairs::sphere_sphere;
 use crate::narrow::{Placed, Touches};
 use crate::par;
 use crate::shape::LimitPlane;
@@ -28,7 +30,7 @@ pub fn find_candidates(model: &Model, work: &mut Work) {
     let view = BoundsView {
         balls: &work.balls,
         boxes: &work.boxes,
-        fixed: &model.fixed,
+        fixed: if model.fixed.contains(&true) { &model.fixed } else { &[] },
         boundaries: &model.wall_bounds,
         epoch: model.epoch,
     };
@@ -43,7 +45,15 @@ pub fn find_candidates(model: &Model, work: &mut Work) {
 /// Asks the pair routines and sorts their contacts into the order of response.
 pub fn collect(model: &Model, state: &State, let_back: &mut LetBack, work: &mut Work) {
     settle_planes(model, state, let_back);
-    let scene = Scene { model, state, let_back, balls: &work.balls, rotations: &work.rotations };
+    let scene = Scene {
+        model,
+        state,
+        let_back,
+        balls: &work.balls,
+        rotations: &work.rotations,
+        mode: model.settings.contact,
+        only_spheres: model.all_spheres && model.spheres_meet_as_spheres,
+    };
     let contacts = &mut work.contacts;
     contacts.list.clear();
     contacts.points.clear();
@@ -98,6 +108,9 @@ struct Scene<'a> {
     let_back: &'a LetBack,
     balls: &'a [Ball],
     rotations: &'a [Mat3],
+    mode: ContactMode,
+    /// every body is a sphere, and spheres have the routine of spheres
+    only_spheres: bool,
 }
 
 impl Scene<'_> {
@@ -116,11 +129,33 @@ impl Scene<'_> {
     fn touch_pair(&self, i: u32, j: u32, block: &mut Block) {
         let (si, sj) = (self.model.serial[i as usize], self.model.serial[j as usize]);
         let ((a, low), (b, high)) = if si < sj { ((i, si), (j, sj)) } else { ((j, sj), (i, si)) };
+        let key = pair_key(low, high, self.mode);
+        if self.only_spheres {
+            return self.touch_spheres(key, a, b, block);
+        }
         let entry = self.model.table.lookup(self.model.body(a as usize).kind, self.model.body(b as usize).kind);
         let (first, second) = (self.placed(a), self.placed(b));
         let start = block.touches.list.len();
         entry.call(&first, &second, &mut block.touches);
-        self.emit(pair_key(low, high, self.model.settings.contact), a, Other::Body(b), start, block);
+        self.emit(key, a, Other::Body(b), start, block);
+    }
+
+    /// What the table's routine for spheres reports, without asking the table.
+    #[inline]
+    fn touch_spheres(&self, key: u64, a: u32, b: u32, block: &mut Block) {
+        if let Some(m) = sphere_sphere::meet(&self.balls[a as usize], &self.balls[b as usize]) {
+            block.contacts.push(Contact {
+                key,
+                a,
+                b: Other::Body(b),
+                feature: 0,
+                normal: m.normal,
+                point: m.middle(),
+                depth: m.depth,
+                first_point: 0,
+                point_count: 0,
+            });
+        }
     }
 
     /// Contacts of a body and a boundary.
@@ -138,7 +173,8 @@ impl Scene<'_> {
         };
         let start = block.touches.list.len();
         entry.call(&first, &second, &mut block.touches);
-        self.emit(wall_key(serial, wall, self.model.settings.contact), body, Other::Wall(wall), start, block);
+        let key = wall_key(serial, wall, self.mode);
+        self.emit(key, body, Other::Wall(wall), start, block);
     }
 
     fn emit(&self, key: u64, a: u32, b: Other, start: usize, block: &mut Block) {

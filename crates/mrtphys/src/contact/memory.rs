@@ -10,12 +10,14 @@ const WALLS_LAST: u64 = 1 << 63;
 const PAIRS_LAST: u64 = 1 << 31;
 
 /// Sorts the contact of two bodies, the one created first before the other, into the order of response.
+#[inline]
 pub fn pair_key(low: u32, high: u32, mode: ContactMode) -> u64 {
     let key = (u64::from(low) << 32) | u64::from(high);
     if mode == ContactMode::Thesis { key | PAIRS_LAST } else { key }
 }
 
 /// Sorts the contact of a body and a boundary into the order of response.
+#[inline]
 pub fn wall_key(serial: u32, wall: u32, mode: ContactMode) -> u64 {
     let key = (u64::from(serial) << 32) | u64::from(wall);
     if mode == ContactMode::Thesis { key } else { key | WALLS_LAST }
