@@ -5,7 +5,7 @@ mod support;
 
 use mrtphys::field::{Scope, UniformField};
 use mrtphys::shape::{Polyhedron, Sphere};
-use mrtphys::{BodyDef, FrictionLaw, Mass, Mat3, Settings, Surface, Vec3, World};
+use mrtphys::{BodyDef, Combine, FrictionLaw, Mass, Mat3, Settings, Surface, Vec3, World};
 use std::sync::Arc;
 use support::{Kind, Random, gas};
 
@@ -176,7 +176,7 @@ fn spheres(law: FrictionLaw, surface: Surface, fps: u32) -> World {
     let n = 10;
     let r = 0.15 / f64::from(n);
     let mut world = World::new(Settings { friction_law: law, ..settings(fps) }).unwrap();
-    let wall = Surface { friction: 0.0, restitution: 1.0, ..surface };
+    let wall = Surface { restitution: 1.0, restitution_combine: Combine::Maximum, ..Surface::default() };
     world.add_box("box", Vec3::ZERO, Vec3::splat(1.0), wall).unwrap();
     let shape = Arc::new(Sphere::new(r).unwrap());
     let mut random = Random(11);
