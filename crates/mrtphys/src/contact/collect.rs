@@ -1,6 +1,7 @@
 //! Stages 3 to 5: from bounds to candidates, from candidates to contacts, and into the order of response.
 
 use super::let_back::{LetBack, Standing};
+use super::memory::{pair_key, wall_key};
 use super::{Contact, Other};
 use crate::bounds::Ball;
 use crate::broad::BoundsView;
@@ -50,7 +51,7 @@ pub fn collect(model: &Model, state: &State, let_back: &mut LetBack, work: &mut 
         let_back,
         balls: &work.balls,
         rotations: &work.rotations,
-        thesis_order: model.settings.contact == ContactMode::Thesis,
+        mode: model.settings.contact,
         only_spheres: model.all_spheres && model.spheres_meet_as_spheres,
     };
     let contacts = &mut work.contacts;
@@ -107,7 +108,7 @@ struct Scene<'a> {
     let_back: &'a LetBack,
     balls: &'a [Ball],
     rotations: &'a [Mat3],
-    thesis_order: bool,
+    mode: ContactMode,
     /// every body is a sphere, and spheres have the routine of spheres
     only_spheres: bool,
 }
@@ -128,8 +129,7 @@ impl Scene<'_> {
     fn touch_pair(&self, i: u32, j: u32, block: &mut Block) {
         let (si, sj) = (self.model.serial[i as usize], self.model.serial[j as usize]);
         let ((a, low), (b, high)) = if si < sj { ((i, si), (j, sj)) } else { ((j, sj), (i, si)) };
-        let after_walls = if self.thesis_order { 1 << 31 } else { 0 };
-        let key = (u64::from(low) << 32) | after_walls | u64::from(high);
+        let key = pair_key(low, high, self.mode);
         if self.only_spheres {
             return self.touch_spheres(key, a, b, block);
         }
@@ -173,7 +173,7 @@ impl Scene<'_> {
         };
         let start = block.touches.list.len();
         entry.call(&first, &second, &mut block.touches);
-        let key = (u64::from(serial) << 32) | u64::from(wall) | if self.thesis_order { 0 } else { 1 << 63 };
+        let key = wall_key(serial, wall, self.mode);
         self.emit(key, body, Other::Wall(wall), start, block);
     }
 

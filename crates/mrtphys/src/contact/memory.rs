@@ -2,6 +2,36 @@
 //! contact without friction, so that corners don't leak).
 
 use super::Contact;
+use crate::def::ContactMode;
+
+/// Marks the keys of boundaries, which come after the pairs.
+const WALLS_LAST: u64 = 1 << 63;
+/// Marks the keys of pairs, which come after the boundaries of the first body in the thesis's order.
+const PAIRS_LAST: u64 = 1 << 31;
+
+/// Sorts the contact of two bodies, the one created first before the other, into the order of response.
+#[inline]
+pub fn pair_key(low: u32, high: u32, mode: ContactMode) -> u64 {
+    let key = (u64::from(low) << 32) | u64::from(high);
+    if mode == ContactMode::Thesis { key | PAIRS_LAST } else { key }
+}
+
+/// Sorts the contact of a body and a boundary into the order of response.
+#[inline]
+pub fn wall_key(serial: u32, wall: u32, mode: ContactMode) -> u64 {
+    let key = (u64::from(serial) << 32) | u64::from(wall);
+    if mode == ContactMode::Thesis { key } else { key | WALLS_LAST }
+}
+
+/// Creation numbers of the bodies of a contact.
+fn parties(key: u64, mode: ContactMode) -> [Option<u32>; 2] {
+    let of_pair = match mode {
+        ContactMode::Thesis => key & PAIRS_LAST != 0,
+        ContactMode::Exact => key & WALLS_LAST == 0,
+    };
+    let number = |part: u64| (part & 0x7fff_ffff) as u32;
+    [Some(number(key >> 32)), of_pair.then(|| number(key))]
+}
 
 /// Keys of the pairs that were in contact, ascending.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,11 +53,8 @@ impl ContactMemory {
     }
 
     /// Forgets every pair of a body.
-    pub fn forget(&mut self, serial: u32) {
-        self.keys.retain(|&key| {
-            let (high, low) = (((key >> 32) & 0x7fff_ffff) as u32, (key & 0x7fff_ffff) as u32);
-            high != serial && low != serial
-        });
+    pub fn forget(&mut self, serial: u32, mode: ContactMode) {
+        self.keys.retain(|&key| parties(key, mode).into_iter().all(|party| party != Some(serial)));
     }
 
     /// The keys, ascending.

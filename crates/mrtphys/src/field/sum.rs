@@ -6,7 +6,7 @@
 use super::{FlowField, ForceField, Reach, Scope};
 use crate::error::{Error, Result};
 use crate::math::{Real, Vec3};
-use crate::model::Model;
+use crate::model::{BodyType, Model};
 use crate::motion::FARTHEST;
 use crate::par::{BLOCK, for_each_block};
 use crate::state::{Line, State};
@@ -21,6 +21,30 @@ pub fn potential_energy(model: &Model, state: &State) -> Real {
     let fields = Fields::new(model, &state.lines);
     let x: Vec<Vec3> = state.lines.iter().map(|l| l.x).collect();
     in_order(model, &fields.potentials(&Place { lines: &state.lines, x: &x, v: &x }))
+}
+
+/// The part of [`potential_energy`] that the place of one body decides \[J\]: its own, and that of all where it carries a
+/// field.
+pub(crate) fn potential_round(model: &Model, state: &State, slot: usize) -> Real {
+    if model.forces.iter().any(|f| f.reach.carrier == Some(slot as u32)) {
+        return potential_energy(model, state);
+    }
+    let (line, body) = (&state.lines[slot], model.body(slot));
+    if model.forces.is_empty() || !moves(line) {
+        return 0.0;
+    }
+    let weight = body.mass * weight_in_medium(model, body);
+    let acting =
+        model.forces.iter().filter_map(|f| Acting::new(&*f.field, f.field.uniform(), &f.scope, &f.reach, &state.lines));
+    let relative = |f: &Acting<dyn ForceField>| f.carrier.map_or(line.x, |carrier| line.x - state.lines[carrier].x);
+    let potentials = acting.filter(|f| f.acts_on(slot)).filter_map(|f| f.field.potential(relative(&f)));
+    potentials.fold(0.0, |sum, p| sum + weight * p)
+}
+
+/// What buoyancy leaves of a body's weight: 1 - density of the medium x volume / mass.
+fn weight_in_medium(model: &Model, body: &BodyType) -> Real {
+    let density = model.settings.medium_density;
+    if density == 0.0 || body.mass == Real::INFINITY { 1.0 } else { 1.0 - density * body.volume / body.mass }
 }
 
 /// Acceleration \[m/s2\] of a body by all force fields, reactions of the fields it carries included; zero for infinite mass.
@@ -140,10 +164,6 @@ pub(crate) struct Fields<'a> {
 impl<'a> Fields<'a> {
     /// The fields as they act on these bodies.
     pub fn new(model: &'a Model, lines: &[Line]) -> Fields<'a> {
-        let density = model.settings.medium_density;
-        let weight = |mass: Real, volume: Real| {
-            if density == 0.0 || mass == Real::INFINITY { 1.0 } else { 1.0 - density * volume / mass }
-        };
         let forces = model.forces.iter().enumerate();
         let flows = model.flows.iter().enumerate();
         Fields {
@@ -158,7 +178,7 @@ impl<'a> Fields<'a> {
                     Some(Acting::new(&*f.field, f.field.uniform(), &f.scope, &f.reach, lines)?.numbered(i))
                 })
                 .collect(),
-            weights: model.types.iter().map(|t| weight(t.mass, t.volume)).collect(),
+            weights: model.types.iter().map(|t| weight_in_medium(model, t)).collect(),
         }
     }
 

@@ -2,11 +2,11 @@
 
 use super::{Encounter, Party};
 use crate::contact::collect::manifold;
-use crate::contact::{Contact, Other};
+use crate::contact::{Contact, ContactList, Other};
 use crate::def::ImpactMode;
 use crate::event::StepEvent;
 use crate::ledger::Ledger;
-use crate::math::{Real, Vec3};
+use crate::math::{Real, Vec3, max};
 use crate::model::{BodyType, Model};
 use crate::state::State;
 use crate::step::Recipe;
@@ -15,6 +15,10 @@ use crate::work::Work;
 /// A contact is at rest, not an impact, where it approaches no faster than the fields alone can have made it within this
 /// many steps: an inelastic pair then stays together instead of bouncing ever lower.
 const RESTING_STEPS: Real = 2.0;
+/// Sweeps over the contacts of piles at most; what is left is taken up in the next step.
+const SWEEPS: usize = 64;
+/// A contact in a pile is left alone below this part of the speed up to which it is at rest.
+const STILL: Real = 1.0 / 64.0;
 
 /// Answers the contacts of the step.
 pub(crate) fn answer(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, ledger: &mut Ledger) {
@@ -32,7 +36,42 @@ fn answer_in_order(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, ledg
     for contact in &contacts.list {
         answer_one(recipe, state, work, ledger, (contact, &contacts.points), &mut pairs);
     }
+    settle_piles(recipe, state, work, ledger, &contacts, &mut pairs);
     work.contacts = contacts;
+}
+
+/// What presses on an inelastic contact comes through its neighbours, which may be answered after it: its pair is asked
+/// again, without restitution because it has bounced in this step already, up and down the order, until all of a pile knows
+/// that it lies on something. Every such impulse takes energy away. Elastic contacts are answered once a step.
+fn settle_piles(
+    recipe: &Recipe<'_>,
+    state: &mut State,
+    work: &mut Work,
+    ledger: &mut Ledger,
+    contacts: &ContactList,
+    pairs: &mut PairSurfaces<'_>,
+) {
+    if work.accelerations.is_empty() {
+        return;
+    }
+    let inelastic: Vec<&Contact> = contacts.list.iter().filter(|c| pairs.of(c).restitution < 1.0).collect();
+    let count = inelastic.len();
+    for sweep in 0..SWEEPS {
+        let mut answered = false;
+        for i in 0..count {
+            let contact = inelastic[if sweep % 2 == 0 { count - 1 - i } else { i }];
+            let still = STILL * resting_speed(recipe.dt, &work.accelerations, contact);
+            let surface = PairSurface { restitution: 0.0, ..pairs.of(contact) };
+            let found = encounter(recipe, state, &work.accelerations, contact, surface);
+            if let Some(found) = found.filter(|e| e.approach() > still) {
+                answer_found(recipe, state, work, ledger, (contact, &contacts.points), &found);
+                answered = true;
+            }
+        }
+        if !answered {
+            break;
+        }
+    }
 }
 
 /// Answers one contact with the law of its pair.
@@ -50,10 +89,23 @@ pub(super) fn answer_one(
         return bounce_smooth(recipe, state, work, contact);
     }
     let Some(found) = encounter(recipe, state, &work.accelerations, contact, surface) else { return };
+    answer_found(recipe, state, work, ledger, (contact, points), &found);
+}
+
+/// Answers an approach: as an area at rest, or as an impact.
+fn answer_found(
+    recipe: &Recipe<'_>,
+    state: &mut State,
+    work: &mut Work,
+    ledger: &mut Ledger,
+    (contact, points): (&Contact, &[Vec3]),
+    found: &Encounter,
+) {
+    let smooth = found.friction == 0.0 && recipe.law.is_frictionless_at_zero();
     if found.restitution == 0.0 && (smooth || recipe.law.is_dry_friction()) && contact.point_count > 1 {
-        return settle_area(recipe, state, work, ledger, (contact, points), &found);
+        return settle_area(recipe, state, work, ledger, (contact, points), found);
     }
-    respond(recipe, state, work, ledger, contact, &found);
+    respond(recipe, state, work, ledger, contact, found);
 }
 
 /// A contact area without restitution is answered at all its corners at once, so that the pressure finds its place in the
@@ -203,19 +255,23 @@ pub(super) fn encounter(
     if !(approach > 0.0) {
         return None;
     }
-    if surface.restitution < 1.0 && is_resting(recipe.dt, accelerations, contact, approach) {
+    if surface.restitution < 1.0 && approach <= resting_speed(recipe.dt, accelerations, contact) {
         encounter.restitution = 0.0;
     }
     Some(encounter)
 }
 
-fn is_resting(dt: Real, accelerations: &[Vec3], contact: &Contact, approach: Real) -> bool {
-    let of = |slot: u32| accelerations.get(slot as usize).copied().unwrap_or(Vec3::ZERO);
+/// The approach speed up to which a contact is at rest \[m/s\].
+///
+/// Inside a pile two neighbours are accelerated alike; what presses them together is that others hold one of them back, and
+/// that turns the pull of the fields into any direction. So the larger acceleration counts, wherever it points.
+pub(crate) fn resting_speed(dt: Real, accelerations: &[Vec3], contact: &Contact) -> Real {
+    let of = |slot: u32| accelerations.get(slot as usize).map_or(0.0, |a| a.length());
     let b = match contact.b {
         Other::Body(slot) => of(slot),
-        Other::Wall(_) => Vec3::ZERO,
+        Other::Wall(_) => 0.0,
     };
-    approach <= RESTING_STEPS * (of(contact.a) - b).dot(contact.normal) * dt
+    RESTING_STEPS * max(of(contact.a), b) * dt
 }
 
 fn party(model: &Model, state: &State, slot: u32, point: Vec3) -> Party {

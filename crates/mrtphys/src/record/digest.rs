@@ -1,6 +1,8 @@
 //! Digests: short fingerprints of long data, the same on every machine. Not for secrets.
 
-use crate::math::{Quat, Real, Vec3};
+use crate::def::Surface;
+use crate::field::{Reach, Scope};
+use crate::math::{Mat3, Quat, Real, Vec3};
 use crate::model::Model;
 use crate::state::State;
 
@@ -96,33 +98,64 @@ pub(crate) fn state_hash(model: &Model, state: &State, order: &[u32]) -> String 
 /// between steps are not part of it.
 pub(crate) fn model_fingerprint(model: &Model, order: &[u32]) -> u128 {
     let mut d = Digest::default();
+    // The keys in the memory of contacts have another order in each mode.
+    d.bytes(model.settings.contact.name().as_bytes());
     d.word(order.len() as u64);
     for &slot in order {
         let body = model.body(slot as usize);
         d.word(u64::from(model.serial[slot as usize]));
         d.real(body.mass);
         d.vector(body.inertia.moments);
+        d.orientation(body.inertia.axes);
         d.real(body.volume);
         d.vector(body.ball.center);
         d.real(body.ball.radius);
-        d.real(body.surface.friction);
-        d.real(body.surface.restitution);
+        surface(&mut d, &body.surface);
         d.word(u64::from(body.kind.0));
+        let placed = body.shape.bounding_box(Vec3::ZERO, &Mat3::IDENTITY);
+        d.vector(placed.min);
+        d.vector(placed.max);
     }
     d.word(model.boundaries.len() as u64);
     for (boundary, bounds) in model.boundaries.iter().zip(&model.wall_bounds) {
         d.word(u64::from(boundary.kind.0));
         d.vector(boundary.position);
-        d.real(boundary.surface.friction);
-        d.real(boundary.surface.restitution);
+        surface(&mut d, &boundary.surface);
+        d.bytes(format!("{:?}", boundary.shape).as_bytes());
         if let Some((normal, offset)) = bounds.behind {
             d.vector(normal);
             d.real(offset);
         }
     }
-    model.forces.iter().for_each(|f| d.bytes(format!("{:?}", f.field).as_bytes()));
-    model.flows.iter().for_each(|f| d.bytes(format!("{:?}", f.field).as_bytes()));
+    d.word(model.forces.len() as u64);
+    for f in &model.forces {
+        d.bytes(format!("{:?}", f.field).as_bytes());
+        scope(&mut d, model, &f.scope, &f.reach);
+    }
+    d.word(model.flows.len() as u64);
+    for f in &model.flows {
+        d.bytes(format!("{:?}", f.field).as_bytes());
+        scope(&mut d, model, &f.scope, &f.reach);
+    }
     d.finish()
+}
+
+fn surface(d: &mut Digest, s: &Surface) {
+    d.real(s.friction);
+    d.real(s.restitution);
+    d.bytes(format!("{:?}{:?}", s.friction_combine, s.restitution_combine).as_bytes());
+}
+
+/// Whom a field acts on, and what carries it, by creation numbers.
+fn scope(d: &mut Digest, model: &Model, scope: &Scope, reach: &Reach) {
+    d.word(u64::from(scope.without_reaction) | (u64::from(reach.gone) << 1));
+    let serial = |slot: usize| u64::from(model.serial[slot]);
+    d.word(reach.carrier.map_or(u64::MAX, |slot| serial(slot as usize)));
+    let Some(only) = &reach.only else { return };
+    let mut serials: Vec<u64> = (0..only.len()).filter(|&slot| only[slot]).map(serial).collect();
+    serials.sort_unstable();
+    d.word(serials.len() as u64);
+    serials.into_iter().for_each(|s| d.word(s));
 }
 
 #[cfg(test)]

@@ -15,7 +15,7 @@ use crate::world::Books;
 
 const MAGIC: &[u8; 8] = b"mrtphys\0";
 /// Grows with every change of the layout.
-const VERSION: u64 = 1;
+const VERSION: u64 = 2;
 
 pub(crate) fn write(model: &Model, state: &State, books: &Books, order: &[u32]) -> Vec<u8> {
     let mut out = Writer { bytes: MAGIC.to_vec() };

@@ -21,9 +21,14 @@ pub(crate) fn step(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, book
     let model = recipe.model;
     let start = Instant::now();
     let mut let_back = std::mem::take(&mut state.let_back);
+    let may_fail = !(model.forces.is_empty() && model.flows.is_empty());
+    let known = may_fail.then(|| let_back.clone());
     collect::settle_planes(model, state, &mut let_back);
     state.let_back = let_back;
-    move_all(recipe, state, work, books)?;
+    if let Err(error) = move_all(recipe, state, work, books) {
+        state.let_back = known.unwrap_or_default();
+        return Err(error);
+    }
     let moved = Instant::now();
     let fastest = bounds::place(model, state, work);
     books.largest_step = max(books.largest_step, 0.5 * fastest.sqrt() * recipe.dt);
@@ -37,9 +42,8 @@ pub(crate) fn step(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, book
     answer::answer(recipe, state, work, &mut books.ledger);
     let answered = Instant::now();
     project::project(recipe, state, work, &mut books.ledger);
-    if recipe.law.needs_contact_memory() {
-        state.contacts.remember(&work.contacts.list);
-    }
+    // A law without memory leaves none: what was in contact long ago is news when another law asks again.
+    state.contacts.remember(if recipe.law.needs_contact_memory() { &work.contacts.list } else { &[] });
     let times = &mut work.stages;
     times.motion = moved - start;
     times.bounds = bounded - moved;

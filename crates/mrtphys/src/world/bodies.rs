@@ -106,7 +106,7 @@ impl World {
             v: if moves { def.velocity } else { Vec3::ZERO },
             inverse_mass: kind_of.inverse_mass(),
         };
-        let l = kind_of.inertia.angular_momentum(orientation, def.angular_velocity);
+        let l = checked_spin(&object, &kind_of.inertia, orientation, def.angular_velocity)?;
         let spin = Spin { q: orientation, l };
         self.model.all_spheres &= kind_of.is_plain_sphere();
         let type_index = self.intern(kind_of);
@@ -130,7 +130,7 @@ impl World {
         let slot = self.ids.slot(id, self.tag)?;
         self.book_removed(slot);
         let serial = self.model.serial[slot];
-        self.state.contacts.forget(serial);
+        self.state.contacts.forget(serial, self.model.settings.contact);
         self.state.let_back.forget(serial);
         self.ids.swap_remove(slot);
         self.model.type_of.swap_remove(slot);
@@ -200,7 +200,13 @@ impl World {
     /// The handle is not valid, or the quaternion is zero or not finite.
     pub fn set_orientation(&mut self, id: BodyId, orientation: Quat) -> Result<()> {
         let q = checked_orientation("body", orientation)?;
-        self.change(id, "orientation", Vec3::ZERO, |world, slot| world.state.spins[slot].q = q)
+        self.change(id, "orientation", Vec3::ZERO, |world, slot| {
+            let spin = &mut world.state.spins[slot];
+            if spin.l != Vec3::ZERO {
+                spin.l = q.to_matrix() * spin.q.to_matrix().transpose_mul(spin.l);
+            }
+            spin.q = q;
+        })
     }
 
     /// Sets the velocity of the centre of mass \[m/s\]; a fixed body keeps zero.
@@ -220,11 +226,11 @@ impl World {
     /// # Errors
     /// The handle is not valid, or the angular velocity is not finite.
     pub fn set_angular_velocity(&mut self, id: BodyId, angular_velocity: Vec3) -> Result<()> {
-        self.change(id, "angular_velocity", angular_velocity, |world, slot| {
-            let inertia = world.model.body(slot).inertia;
-            let spin = &mut world.state.spins[slot];
-            spin.l = inertia.angular_momentum(spin.q, angular_velocity);
-        })
+        let slot = self.ids.slot(id, self.tag)?;
+        check_vector("body", "angular_velocity", angular_velocity)?;
+        let (q, inertia) = (self.state.spins[slot].q, &self.model.body(slot).inertia);
+        let l = checked_spin("body", inertia, q, angular_velocity)?;
+        self.change(id, "angular_velocity", angular_velocity, |world, slot| world.state.spins[slot].l = l)
     }
 
     /// Sets the momentum \[Ns\].
@@ -299,8 +305,9 @@ impl World {
         } else if kind_of.mass == Real::INFINITY {
             homogeneous_inertia(object, &*kind_of.shape, value, self.model.settings.inertia)?
         } else {
-            Inertia::new(kind_of.inertia.moments * (value / kind_of.mass), kind_of.inertia.axes)
+            usable(object, Inertia::new(kind_of.inertia.moments * (value / kind_of.mass), kind_of.inertia.axes))?
         };
+        checked_spin(object, &kind_of.inertia, body.orientation, body.angular_velocity)?;
         kind_of.mass = value;
         self.replace_type(id, kind_of, body.angular_velocity)
     }
@@ -433,6 +440,17 @@ pub(super) fn check_vector(object: &str, field: &'static str, v: Vec3) -> Result
     Ok(())
 }
 
+/// Angular momentum of a spin, if it is a number.
+fn checked_spin(object: &str, inertia: &Inertia, orientation: Quat, angular_velocity: Vec3) -> Result<Vec3> {
+    let l = inertia.angular_momentum(orientation, angular_velocity);
+    if l.is_finite() {
+        return Ok(l);
+    }
+    let (field, value) = ("angular_velocity", angular_velocity.max_abs());
+    let expected = "small enough for the angular momentum to be a finite number";
+    Err(Error::OutOfRange { object: object.into(), field, value, expected })
+}
+
 fn checked_orientation(object: &str, q: Quat) -> Result<Quat> {
     if !q.is_finite() {
         return Err(Error::NonFinite { object: object.into(), field: "orientation" });
@@ -501,6 +519,11 @@ fn homogeneous_inertia(object: &str, shape: &dyn Shape, mass: Real, mode: Inerti
             Inertia::new(Vec3::splat(0.4 * mass * r * r), Quat::IDENTITY)
         }
     };
+    usable(object, inertia)
+}
+
+/// Refuses an inertia whose moments or their reciprocals have lost their digits.
+fn usable(object: &str, inertia: Inertia) -> Result<Inertia> {
     let normal = |m: Real| m.is_normal() && m > 0.0 && (1.0 / m).is_normal();
     if normal(inertia.moments.x) && normal(inertia.moments.y) && normal(inertia.moments.z) {
         return Ok(inertia);

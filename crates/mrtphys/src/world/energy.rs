@@ -1,8 +1,7 @@
 //! Energies, momenta, and the booking of changes made from outside.
 
 use super::World;
-use super::fields::resolve_scopes;
-use crate::field::sum::potential_energy;
+use crate::field::sum::{potential_energy, potential_round};
 use crate::ledger::{Energy, Ledger};
 use crate::math::{Real, Vec3};
 
@@ -24,9 +23,7 @@ impl World {
         if self.scopes_are_fresh() {
             return potential_energy(&self.model, &self.state);
         }
-        let mut model = self.model.clone();
-        resolve_scopes(&mut model, &self.ids, self.tag);
-        potential_energy(&model, &self.state)
+        potential_energy(&self.with_fresh_scopes(), &self.state)
     }
 
     /// Energies when the first step began \[J\]; before it, those now.
@@ -63,11 +60,10 @@ impl World {
         (0.5 * body.mass * line.v.length_squared(), body.inertia.energy(spin.q, spin.l))
     }
 
-    /// Kinetic energy of one body and the potential energy of all: what a change to this body can change.
+    /// Kinetic energy of one body and the potential energy that its place decides: what a change to this body can change.
     fn energy_round(&self, slot: usize) -> Real {
         let (linear, rotational) = self.kinetic_of(slot);
-        let potential = if self.model.forces.is_empty() { 0.0 } else { potential_energy(&self.model, &self.state) };
-        linear + rotational + potential
+        linear + rotational + potential_round(&self.model, &self.state, slot)
     }
 
     /// Makes a change to one body; once the world has lived, books the energy to `user`.
@@ -75,6 +71,8 @@ impl World {
         if self.books.initial.is_none() {
             return change(self);
         }
+        // Bodies may have come and gone since the last step: their fields must find them before the change, too.
+        self.refresh_scopes();
         let before = self.energy_round(slot);
         change(self);
         self.refresh_scopes();
@@ -86,8 +84,10 @@ impl World {
         if self.books.initial.is_none() {
             return change(self);
         }
+        self.refresh_scopes();
         let before = potential_energy(&self.model, &self.state);
         change(self);
+        self.scopes_epoch = None;
         self.refresh_scopes();
         self.books.ledger.user += potential_energy(&self.model, &self.state) - before;
     }
@@ -109,14 +109,10 @@ impl World {
     /// What the world's energy owes to one body.
     fn energy_with_and_without(&mut self, slot: usize) -> Real {
         self.refresh_scopes();
-        let (linear, rotational) = self.kinetic_of(slot);
-        let mut potential = 0.0;
-        if !self.model.forces.is_empty() {
-            let with = potential_energy(&self.model, &self.state);
-            let radius = std::mem::replace(&mut self.state.lines[slot].radius, -1.0);
-            potential = with - potential_energy(&self.model, &self.state);
-            self.state.lines[slot].radius = radius;
-        }
-        linear + rotational + potential
+        let with = self.energy_round(slot);
+        let radius = std::mem::replace(&mut self.state.lines[slot].radius, -1.0);
+        let without = potential_round(&self.model, &self.state, slot);
+        self.state.lines[slot].radius = radius;
+        with - without
     }
 }

@@ -16,9 +16,9 @@ impl World {
     pub fn add_force(&mut self, field: Arc<dyn ForceField>, scope: Scope) -> Result<FieldId> {
         self.check_scope(&scope)?;
         let index = self.model.forces.len() as u32;
-        self.scopes_epoch = None;
         let reach = Reach::default();
         self.booking_all(|world| world.model.forces.push(PlacedForce { field, scope, reach }));
+        self.scopes_epoch = None;
         Ok(FieldId { index, flow: false, world: self.tag })
     }
 
@@ -85,6 +85,13 @@ impl World {
         self.scopes_epoch == Some(self.model.epoch)
     }
 
+    /// The model as it will be when the scopes are turned into slots again.
+    pub(super) fn with_fresh_scopes(&self) -> Model {
+        let mut model = self.model.clone();
+        resolve_scopes(&mut model, &self.ids, self.tag);
+        model
+    }
+
     /// Turns the fields' scopes into slots, if bodies have come, gone or changed their slots since.
     pub(super) fn refresh_scopes(&mut self) {
         if !self.scopes_are_fresh() {
@@ -94,7 +101,7 @@ impl World {
     }
 }
 
-pub(super) fn resolve_scopes(model: &mut Model, ids: &IdTable, world: u32) {
+fn resolve_scopes(model: &mut Model, ids: &IdTable, world: u32) {
     let count = model.serial.len();
     let forces = model.forces.iter_mut().map(|f| (&f.scope, &mut f.reach));
     let flows = model.flows.iter_mut().map(|f| (&f.scope, &mut f.reach));

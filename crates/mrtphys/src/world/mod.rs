@@ -201,6 +201,11 @@ impl World {
         &self.work.contacts
     }
 
+    /// Keys of the pairs that were in contact in the last step, ascending, where the friction law asks for them.
+    pub fn contact_memory(&self) -> &[u64] {
+        self.state.contacts.keys()
+    }
+
     /// Cells of the broad phase as of the last step, for drawing.
     pub fn cells(&self) -> Vec<broad::Cell> {
         self.work.broad.as_ref().map_or_else(Vec::new, |b| b.cells())
@@ -220,7 +225,11 @@ impl World {
 
     /// Everything that the future depends on, and the books, as bytes with a checksum.
     pub fn snapshot(&self) -> Vec<u8> {
-        crate::record::snapshot::write(&self.model, &self.state, &self.books, &self.model.order())
+        let order = self.model.order();
+        if self.scopes_are_fresh() {
+            return crate::record::snapshot::write(&self.model, &self.state, &self.books, &order);
+        }
+        crate::record::snapshot::write(&self.with_fresh_scopes(), &self.state, &self.books, &order)
     }
 
     /// Goes on from a snapshot of a world with the same bodies, boundaries and fields. The world continues bit for bit as
@@ -229,6 +238,7 @@ impl World {
     /// # Errors
     /// The bytes are damaged, of another version, or of a world with other contents; this world is then unchanged.
     pub fn restore(&mut self, snapshot: &[u8]) -> Result<()> {
+        self.refresh_scopes();
         let order = self.model.order();
         let (state, books) = crate::record::snapshot::read(snapshot, &self.model, &self.state, &order)?;
         self.state = state;
