@@ -52,6 +52,14 @@ fn the_first_page_works_as_written() {
     );
     assert!(line(out("run ball.toml --steps-per-frame 512"), "ledger").contains("-3.1777"));
 
+    let slope = folder.json("slope.json");
+    let speed = |i: usize| slope["bodies"][i]["velocity"][0].as_f64().expect("a number");
+    let (g, half) = (9.80665, 0.5_f64);
+    let expected = [g * (half - 0.3 * 0.75_f64.sqrt()), g * half * 5.0 / 7.0, 0.0];
+    for (i, v) in expected.iter().enumerate() {
+        assert!((speed(i) - v).abs() < 1e-5, "body {i}: {} is not {v}", speed(i));
+    }
+
     let hash = |args: &str| line(out(args), "state hash").to_string();
     let phases = ["sorted-grid", "adaptive-tree", "regular-grid", "brute-force"];
     let hashes = phases.map(|b| hash(&format!("run gas.toml --broad-phase {b}")));
