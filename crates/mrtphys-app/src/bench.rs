@@ -1,9 +1,10 @@
-//! `mrtphys bench`: where the benchmarks are hooked in.
+//! `mrtphys bench`: the benchmarks of the bench crate.
 
 use crate::exit::{Failure, Outcome};
 use std::ffi::OsString;
 
 /// Runs the benchmarks.
-pub fn bench(_args: &[OsString]) -> Outcome {
-    Err(Failure::not_yet("'bench'", "'mrtphys run SCENE' reports steps per second and the state hash"))
+pub fn bench(args: &[OsString]) -> Outcome {
+    let args: Vec<String> = args.iter().map(|a| a.to_string_lossy().into_owned()).collect();
+    mrtphys_bench::command::run(&args).map_err(Failure::Wrong)
 }

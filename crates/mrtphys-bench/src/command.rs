@@ -4,7 +4,6 @@ use crate::gas::{GasShape, GasSpec};
 use crate::measure::{Window, measure};
 use crate::table;
 use mrtphys::BroadPhaseKind;
-use std::process::ExitCode;
 
 const HELP: &str = "\
 Measures gases of spheres and tetrahedra: time per step and per body, share of each stage, error of the energy, collisions
@@ -36,18 +35,15 @@ struct Options {
 }
 
 /// Runs the command with the arguments that follow its name.
-pub fn run(args: &[String]) -> ExitCode {
+///
+/// # Errors
+/// What is wrong with the arguments, in words.
+pub fn run(args: &[String]) -> Result<(), String> {
     if args.iter().any(|a| a == "--help" || a == "-h") {
         print!("{HELP}");
-        return ExitCode::SUCCESS;
+        return Ok(());
     }
-    match parse(args).and_then(|options| run_all(&options)) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(message) => {
-            eprintln!("mrtphys bench: {message}");
-            ExitCode::from(1)
-        }
-    }
+    run_all(&parse(args)?)
 }
 
 fn parse(args: &[String]) -> Result<Options, String> {

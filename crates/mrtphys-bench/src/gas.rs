@@ -83,17 +83,29 @@ impl GasSpec {
         Ok(world)
     }
 
-    /// Collisions per second of a gas of hard spheres of this density and temperature in bulk, kinetic theory with Enskog's
-    /// factor: N w / 2 with w = 4 n sigma^2 g sqrt(pi kT/m), g = (1 - eta/2)/(1 - eta)^3 (Carnahan and Starling 1969). The
-    /// centres of N spheres share the cube less a skin of one radius along the walls; the density used is that of the cube.
-    /// `mean_square_speed` \[m2/s2\] = 3 kT/m.
+    /// Impacts between bodies per second of a gas of hard spheres, by kinetic theory with the walls to first order in the
+    /// density; `mean_square_speed` \[m2/s2\] = 3 kT/m. For other shapes: that of their bounding spheres.
+    ///
+    /// In bulk N w / 2 with w = 4 rho sigma^2 g sqrt(pi kT/m), g = (1 - eta/2)/(1 - eta)^3 (Enskog; Carnahan and Starling
+    /// 1969). Centres share the cube less a skin of one radius: volume V, surface A. Near a wall the density is
+    /// rho (1 + rho w(z)), w(z) = pi (sigma - z)^2 (2 sigma + z)/3 being the part of the exclusion sphere behind the wall, so
+    /// that N = rho (V + A rho pi/4 sigma^4); and within sigma of a wall a part (sigma - z)/(2 sigma) of the contact sphere
+    /// is cut off: the pairs are those of a volume V - A sigma/4 + 2 A rho sigma^4 (0.95 pi/6), the integrals over z.
     pub fn collisions_per_second(&self, mean_square_speed: f64) -> f64 {
+        use std::f64::consts::PI;
         let bodies = self.bodies() as f64;
         let sigma = 2.0 * self.radius();
-        let eta = bodies * std::f64::consts::PI / 6.0 * sigma.powi(3);
+        let edge = 1.0 - sigma;
+        let (volume, surface) = (edge.powi(3), 6.0 * edge * edge);
+        let mut density = bodies / volume;
+        for _ in 0..50 {
+            density = bodies / (volume + surface * density * PI / 4.0 * sigma.powi(4));
+        }
+        let eta = density * PI / 6.0 * sigma.powi(3);
         let g = (1.0 - 0.5 * eta) / (1.0 - eta).powi(3);
-        let w = 4.0 * bodies * sigma * sigma * g * (std::f64::consts::PI * mean_square_speed / 3.0).sqrt();
-        0.5 * bodies * w
+        let w = 4.0 * density * sigma * sigma * g * (PI * mean_square_speed / 3.0).sqrt();
+        let pairs = volume - surface * sigma / 4.0 + 2.0 * surface * density * sigma.powi(4) * 0.95 * PI / 6.0;
+        0.5 * density * w * pairs
     }
 }
 

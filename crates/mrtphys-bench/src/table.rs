@@ -6,11 +6,12 @@ use std::fmt::Write;
 /// Head of the table.
 pub fn head() -> String {
     format!(
-        "{:<14} {:>8} {:>6} {:>10} {:>8}  {:<46} {:>9} {:>11} {:>6} {:>4}  {}",
+        "{:<14} {:>8} {:>6} {:>10} {:>10} {:>8}  {:<46} {:>9} {:>11} {:>6} {:>4}  {}",
         "scene",
         "bodies",
         "steps",
         "ms/step",
+        "mean ms",
         "ns/body",
         "share of the stages",
         "E/E0 - 1",
@@ -32,11 +33,12 @@ pub fn line(m: &Measurement) -> String {
         }
     }
     format!(
-        "{:<14} {:>8} {:>6} {:>10.4} {:>8.1}  {:<46} {:>9.1e} {:>11.4e} {:>6.3} {:>4}  {}",
+        "{:<14} {:>8} {:>6} {:>10.4} {:>10.4} {:>8.1}  {:<46} {:>9.1e} {:>11.4e} {:>6.3} {:>4}  {}",
         m.scene,
         m.bodies,
         m.steps,
         1e3 * m.step_seconds,
+        1e3 * m.mean_seconds,
         1e9 * m.step_seconds / m.bodies as f64,
         shares.trim_end(),
         m.energy_error,

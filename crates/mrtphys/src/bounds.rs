@@ -4,8 +4,9 @@
 use crate::math::{Mat3, Real, Vec3};
 use crate::model::Model;
 use crate::par;
-use crate::state::State;
+use crate::state::{Line, State};
 use crate::work::Work;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A sphere; radius below zero: empty, meets nothing; infinite: meets everything that is not empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -132,19 +133,35 @@ pub(crate) fn rounding_of(body: &Ball, offset: Real) -> Real {
 }
 
 /// Bounding spheres of all bodies, rotation matrices of those that are no spheres, boxes where the broad phase wants them.
-pub fn place(model: &Model, state: &State, work: &mut Work) {
+/// Returns the largest speed of any body as a multiple of its own radius, squared \[1/s2\].
+pub fn place(model: &Model, state: &State, work: &mut Work) -> Real {
     let lines = &state.lines;
+    // Bits of numbers that are not negative are in order as the numbers are, so threads agree on the largest.
+    let fastest = AtomicU64::new(0);
+    let note_speeds = |lines: &[Line]| {
+        let mut largest = 0.0;
+        for line in lines {
+            let r2 = line.radius * line.radius;
+            if line.v.length_squared() > largest * r2 {
+                largest = line.v.length_squared() / r2;
+            }
+        }
+        fastest.fetch_max(largest.to_bits(), Ordering::Relaxed);
+    };
     work.balls.resize(lines.len(), Ball::EMPTY);
     if model.all_spheres {
         work.rotations.clear();
         par::for_each_block(&mut work.balls, |first, balls| {
-            for (ball, line) in balls.iter_mut().zip(&lines[first..]) {
+            let lines = &lines[first..first + balls.len()];
+            for (ball, line) in balls.iter_mut().zip(lines) {
                 *ball = Ball { center: line.x, radius: line.radius };
             }
+            note_speeds(lines);
         });
     } else {
         work.rotations.resize(lines.len(), Mat3::IDENTITY);
         par::for_each_block2(&mut work.balls, &mut work.rotations, |first, balls, rotations| {
+            note_speeds(&lines[first..first + balls.len()]);
             for (i, (ball, rotation)) in balls.iter_mut().zip(rotations).enumerate() {
                 place_one(model, state, first + i, ball, rotation);
             }
@@ -160,6 +177,7 @@ pub fn place(model: &Model, state: &State, work: &mut Work) {
             *bounding_box = model.body(slot).shape.bounding_box(lines[slot].x, rotation);
         }
     });
+    Real::from_bits(fastest.into_inner())
 }
 
 fn place_one(model: &Model, state: &State, slot: usize, ball: &mut Ball, rotation: &mut Mat3) {

@@ -7,6 +7,7 @@ use crate::contact::collect::Block;
 use crate::counters::Counters;
 use crate::event::StepEvent;
 use crate::math::{Mat3, Vec3};
+use crate::state::{Line, Spin};
 use std::time::Duration;
 
 /// Scratch of a world.
@@ -32,10 +33,25 @@ pub struct Work {
     pub events: Vec<StepEvent>,
     /// how far each body was pushed out of overlaps in this step \[m\]; empty until the first push
     pub shifts: Vec<Vec3>,
+    /// memory for sorting the storage
+    pub spare: Spare,
     /// counts of the last step
     pub counters: Counters,
     /// time spent in each stage of the last step
     pub stages: StageTimes,
+}
+
+/// Memory that sorting the storage needs, kept so that no step allocates once warm.
+#[derive(Clone, Debug, Default)]
+pub struct Spare {
+    /// for the translations
+    pub lines: Vec<Line>,
+    /// for the rotations
+    pub spins: Vec<Spin>,
+    /// for numbers by slot
+    pub numbers: Vec<u32>,
+    /// for flags by slot
+    pub flags: Vec<bool>,
 }
 
 /// Wall time per stage. Measured only where asked for: it never influences a result.

@@ -7,6 +7,7 @@ use crate::broad::BoundsView;
 use crate::def::ContactMode;
 use crate::math::{Mat3, Vec3};
 use crate::model::Model;
+use crate::narrow::pairs::sphere_sphere;
 use crate::narrow::{Placed, Touches};
 use crate::par;
 use crate::shape::LimitPlane;
@@ -28,7 +29,7 @@ pub fn find_candidates(model: &Model, work: &mut Work) {
     let view = BoundsView {
         balls: &work.balls,
         boxes: &work.boxes,
-        fixed: &model.fixed,
+        fixed: if model.fixed.contains(&true) { &model.fixed } else { &[] },
         boundaries: &model.wall_bounds,
         epoch: model.epoch,
     };
@@ -50,6 +51,7 @@ pub fn collect(model: &Model, state: &State, let_back: &mut LetBack, work: &mut 
         balls: &work.balls,
         rotations: &work.rotations,
         thesis_order: model.settings.contact == ContactMode::Thesis,
+        only_spheres: model.all_spheres && model.spheres_meet_as_spheres,
     };
     let contacts = &mut work.contacts;
     contacts.list.clear();
@@ -106,6 +108,8 @@ struct Scene<'a> {
     balls: &'a [Ball],
     rotations: &'a [Mat3],
     thesis_order: bool,
+    /// every body is a sphere, and spheres have the routine of spheres
+    only_spheres: bool,
 }
 
 impl Scene<'_> {
@@ -124,16 +128,34 @@ impl Scene<'_> {
     fn touch_pair(&self, i: u32, j: u32, block: &mut Block) {
         let (si, sj) = (self.model.serial[i as usize], self.model.serial[j as usize]);
         let ((a, low), (b, high)) = if si < sj { ((i, si), (j, sj)) } else { ((j, sj), (i, si)) };
+        let after_walls = if self.thesis_order { 1 << 31 } else { 0 };
+        let key = (u64::from(low) << 32) | after_walls | u64::from(high);
+        if self.only_spheres {
+            return self.touch_spheres(key, a, b, block);
+        }
         let entry = self.model.table.lookup(self.model.body(a as usize).kind, self.model.body(b as usize).kind);
         let (first, second) = (self.placed(a), self.placed(b));
         let start = block.touches.list.len();
         entry.call(&first, &second, &mut block.touches);
-        let key = if self.thesis_order {
-            (u64::from(low) << 32) | (1 << 31) | u64::from(high)
-        } else {
-            (u64::from(low) << 32) | u64::from(high)
-        };
         self.emit(key, a, Other::Body(b), start, block);
+    }
+
+    /// What the table's routine for spheres reports, without asking the table.
+    #[inline]
+    fn touch_spheres(&self, key: u64, a: u32, b: u32, block: &mut Block) {
+        if let Some(m) = sphere_sphere::meet(&self.balls[a as usize], &self.balls[b as usize]) {
+            block.contacts.push(Contact {
+                key,
+                a,
+                b: Other::Body(b),
+                feature: 0,
+                normal: m.normal,
+                point: m.middle(),
+                depth: m.depth,
+                first_point: 0,
+                point_count: 0,
+            });
+        }
     }
 
     /// Contacts of a body and a boundary.

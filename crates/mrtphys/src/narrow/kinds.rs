@@ -181,6 +181,13 @@ impl Kinds {
         &self.names[kind.index()]
     }
 
+    /// Whether two spheres are answered by the routine of spheres: it may then be called without asking the table. Comparing
+    /// addresses may say no where it should say yes: that costs time and changes nothing.
+    pub(crate) fn has_plain_spheres(&self) -> bool {
+        let plain: Routine = pairs::sphere_sphere::touch;
+        self.id("sphere").is_some_and(|s| std::ptr::fn_addr_eq(self.resolve().lookup(s, s).routine, plain))
+    }
+
     /// The kinds with their names, ascending.
     pub fn iter(&self) -> impl Iterator<Item = (KindId, &str)> {
         self.names.iter().enumerate().map(|(i, n)| (KindId(i as u16), n.as_str()))

@@ -9,6 +9,7 @@ use crate::contact::{collect, project};
 use crate::counters::Counters;
 use crate::error::Result;
 use crate::impact::answer;
+use crate::math::max;
 use crate::motion;
 use crate::state::State;
 use crate::work::Work;
@@ -24,7 +25,8 @@ pub(crate) fn step(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, book
     state.let_back = let_back;
     move_all(recipe, state, work, books)?;
     let moved = Instant::now();
-    bounds::place(model, state, work);
+    let fastest = bounds::place(model, state, work);
+    books.largest_step = max(books.largest_step, 0.5 * fastest.sqrt() * recipe.dt);
     let bounded = Instant::now();
     collect::find_candidates(model, work);
     let candidates = Instant::now();
@@ -57,24 +59,9 @@ fn move_all(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, books: &mut
     let mut counters = Counters::default();
     let result = motion::advance(model, state, work, recipe.dt, &mut books.ledger, &mut counters);
     work.counters += counters;
-    match (&result, before) {
-        (Err(_), Some((old, ledger))) => {
-            *state = old;
-            books.ledger = ledger;
-        }
-        _ => books.largest_step = crate::math::max(largest_step(state, recipe.dt), books.largest_step),
+    if let (Err(_), Some((old, ledger))) = (&result, before) {
+        *state = old;
+        books.ledger = ledger;
     }
     result
-}
-
-/// The largest distance moved by any body, as a multiple of its own diameter.
-fn largest_step(state: &State, dt: f64) -> f64 {
-    let mut largest = 0.0;
-    for line in &state.lines {
-        let ratio = line.v.length_squared() / (line.radius * line.radius);
-        if ratio > largest && line.radius > 0.0 {
-            largest = ratio;
-        }
-    }
-    0.5 * largest.sqrt() * dt
 }

@@ -86,6 +86,7 @@ impl World {
             forces: Vec::new(),
             flows: Vec::new(),
             all_spheres: true,
+            spheres_meet_as_spheres: kinds.has_plain_spheres(),
             epoch: 0,
         };
         Ok(World {

@@ -71,11 +71,12 @@ impl World {
             return;
         }
         let (model, state) = (&mut self.model, &mut self.state);
-        state.lines = permuted(&state.lines, &order);
-        state.spins = permuted(&state.spins, &order);
-        model.type_of = permuted(&model.type_of, &order);
-        model.serial = permuted(&model.serial, &order);
-        model.fixed = permuted(&model.fixed, &order);
+        let spare = &mut self.work.spare;
+        permute(&mut state.lines, &order, &mut spare.lines);
+        permute(&mut state.spins, &order, &mut spare.spins);
+        permute(&mut model.type_of, &order, &mut spare.numbers);
+        permute(&mut model.serial, &order, &mut spare.numbers);
+        permute(&mut model.fixed, &order, &mut spare.flags);
         self.ids.permute(&order);
         model.epoch += 1;
     }
@@ -141,8 +142,10 @@ impl World {
     }
 }
 
-fn permuted<T: Copy + Send + Sync>(old: &[T], order: &[u32]) -> Vec<T> {
-    order.par_iter().map(|&slot| old[slot as usize]).collect()
+/// What is at `order[k]` goes to k; the old memory is kept for the next time.
+fn permute<T: Copy + Send + Sync>(items: &mut Vec<T>, order: &[u32], spare: &mut Vec<T>) {
+    order.par_iter().map(|&slot| items[slot as usize]).collect_into_vec(spare);
+    std::mem::swap(items, spare);
 }
 
 fn partner(ids: &super::ids::IdTable, world: u32, other: Other) -> Partner {

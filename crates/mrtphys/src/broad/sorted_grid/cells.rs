@@ -5,8 +5,8 @@ use crate::bounds::Ball;
 use crate::math::{Real, Vec3};
 
 /// Edge of a cell as a multiple of the largest radius. Above 2 by more than what rounding can do to a coordinate of up to
-/// 2^40 cells, so that partners are never two cells apart. 2.75 measured fastest for gases from n = 16 to n = 100.
-const EDGE: Real = 2.75;
+/// 2^40 cells, so that partners are never two cells apart. 2.2 measured fastest for gases from n = 8 to n = 100.
+const EDGE: Real = 2.2;
 
 /// Cell coordinates are kept within +-2^40. Clamping keeps neighbours neighbours, so a body farther out only shares its cell
 /// with others farther out.

@@ -61,6 +61,8 @@ impl Default for Index {
 #[derive(Clone, Debug, Default)]
 struct Found {
     pairs: Vec<[u32; 2]>,
+    /// scratch: places of bodies to be compared
+    candidates: Vec<(u32, u32)>,
     tests: u64,
 }
 

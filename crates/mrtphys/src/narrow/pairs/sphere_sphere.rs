@@ -16,11 +16,20 @@ pub(crate) struct Meeting {
     pub depth: Real,
 }
 
+impl Meeting {
+    /// Half-way between the two surfaces on the line of centres \[m\].
+    #[inline]
+    pub fn middle(&self) -> Vec3 {
+        (self.p1 + self.p2) * 0.5
+    }
+}
+
 /// The normal of two balls whose centres coincide. Nothing tells one direction from another; a fixed one keeps the result
 /// defined and the same on every machine.
 pub(crate) const CONCENTRIC_NORMAL: Vec3 = Vec3::X;
 
 /// Whether and how two balls meet; touching counts. Unbounded and empty balls meet nothing here: they have no surface.
+#[inline]
 pub(crate) fn meet(a: &Ball, b: &Ball) -> Option<Meeting> {
     if !a.meets(b) || !(a.radius + b.radius).is_finite() {
         return None;
@@ -37,7 +46,7 @@ pub(crate) fn meet(a: &Ball, b: &Ball) -> Option<Meeting> {
 /// momentum, with or without friction.
 pub fn touch(a: &Placed<'_>, b: &Placed<'_>, out: &mut Touches) {
     if let Some(m) = meet(&a.ball, &b.ball) {
-        let point = (m.p1 + m.p2) * 0.5;
+        let point = m.middle();
         out.push(m.normal, point, m.depth, 0, &[point]);
     }
 }
