@@ -48,7 +48,7 @@ impl World {
         if !dt.is_finite() {
             return Err(Error::NonFinite { object: "step".into(), field: "dt" });
         }
-        if dt < Real::MIN_POSITIVE || dt > 1e9 {
+        if !(Real::MIN_POSITIVE..=1e9).contains(&dt) {
             let expected = "0, or 2.2e-308 to 1e9 s";
             return Err(Error::OutOfRange { object: "step".into(), field: "dt", value: dt, expected });
         }
@@ -82,7 +82,7 @@ impl World {
     }
 
     fn advance_by(&mut self, dt: Real, full: bool) -> Result<()> {
-        if self.state.lines.len() >= SORT_FROM && self.state.clock.steps % SORT_EVERY == 0 {
+        if self.state.lines.len() >= SORT_FROM && self.state.clock.steps.is_multiple_of(SORT_EVERY) {
             self.sort_storage();
         }
         self.refresh_scopes();
