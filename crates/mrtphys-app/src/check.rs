@@ -4,7 +4,7 @@ use crate::cast::{Cast, Party};
 use crate::exit::{Failure, Outcome, warn};
 use crate::output::say;
 use crate::setup;
-use crate::summary::LARGEST_SAFE_STEP;
+use crate::summary::{LARGEST_SAFE_STEP, brief};
 use mrtphys::{Vec3, World};
 use mrtphys_scene::Scene;
 use mrtphys_scene::scene::{Content, MassDesc, Turning};
@@ -22,8 +22,9 @@ pub fn check(name: &OsStr) -> Outcome {
     warn_some(&long_steps(&world, &cast));
     let overlaps = overlaps(&mut world, &cast);
     if overlaps.is_empty() {
-        let (bodies, boundaries) = (cast.body_count(), cast.boundary_count());
-        return say(&format!("{}: sound; {bodies} bodies, {boundaries} boundaries\n", name.to_string_lossy()));
+        let bodies = counted(cast.body_count(), "body", "bodies");
+        let boundaries = counted(cast.boundary_count(), "boundary", "boundaries");
+        return say(&format!("{}: sound; {bodies}, {boundaries}\n", name.to_string_lossy()));
     }
     let mut text = String::new();
     for line in overlaps.iter().take(MOST_TOLD) {
@@ -34,6 +35,20 @@ pub fn check(name: &OsStr) -> Outcome {
         let _ = writeln!(text, "and {} more", overlaps.len() - MOST_TOLD);
     }
     Err(Failure::Wrong(text))
+}
+
+fn counted(n: usize, one: &str, many: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { many })
+}
+
+/// Warns of a run that starts with overlaps: bodies let back into what they should not have entered.
+pub fn warn_of_overlaps(scene: &str, world: &mut World, cast: &Cast) {
+    let found = overlaps(world, cast);
+    // What was looked at is no part of the run.
+    world.forget_scratch();
+    let Some(deepest) = found.first() else { return };
+    let more = if found.len() > 1 { format!(", and {} more", found.len() - 1) } else { String::new() };
+    warn(&format!("{deepest}{more}; 'mrtphys check {scene}' tells all"));
 }
 
 fn warn_some(warnings: &[String]) {
@@ -76,9 +91,10 @@ fn long_steps(world: &World, cast: &Cast) -> Vec<String> {
         let step = body.velocity.length() * dt / diameter;
         if step > LARGEST_SAFE_STEP {
             found.push(format!(
-                "'{}' moves {step:.3} of its own diameter in the first step; above {LARGEST_SAFE_STEP} collisions can \
+                "'{}' moves {} of its own diameter in the first step; above {LARGEST_SAFE_STEP} collisions can \
                  go unseen at fixed steps: use more steps per frame",
-                cast.name(Party::Body(i))
+                cast.name(Party::Body(i)),
+                brief(step)
             ));
         }
     }

@@ -1,4 +1,6 @@
 //! The command line.
+// What stands in brackets in these comments is the help's own notation, and the help shows a backslash as one.
+#![allow(rustdoc::broken_intra_doc_links)]
 
 use crate::choices;
 use crate::exit::{Failure, Outcome, complain};
@@ -39,7 +41,7 @@ enum Command {
     Experiment(Later),
     /// The physics measured against theory (not in this version)
     Validate(Later),
-    /// Benchmarks
+    /// Benchmarks: time, energy, collision rate and state hash
     Bench(Later),
     /// The gallery, a line each
     Scenes,
@@ -64,7 +66,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "S", value_parser = seconds, conflicts_with = "frames")]
     pub seconds: Option<f64>,
     /// Run to the end of this frame
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = frames)]
     pub frames: Option<u64>,
     /// Time-stepping algorithm: fixed-step
     #[arg(long, value_name = "NAME", value_parser = choices::algorithm)]
@@ -79,17 +81,17 @@ pub struct RunArgs {
     #[arg(long, value_name = "NAME", value_parser = choices::friction_law)]
     pub friction_law: Option<FrictionLaw>,
     /// Frames per second of simulated time
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000_000))]
+    #[arg(long, value_name = "N", value_parser = rate)]
     pub fps: Option<u32>,
     /// Physical steps per frame
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000_000))]
+    #[arg(long, value_name = "N", value_parser = rate)]
     pub steps_per_frame: Option<u32>,
     /// Threads to compute with; 0: one for each core. The result is the same for any number
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1024))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
     pub threads: u32,
     /// Seed of the scene's random draws
     // What a scene text can say too: TOML has signed numbers.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
+    #[arg(long, value_name = "N", value_parser = seed)]
     pub seed: Option<u64>,
     /// Write the final state, energies and counters (JSON, or records with the ending .bin)
     #[arg(long, value_name = "FILE")]
@@ -124,6 +126,28 @@ impl RunArgs {
 fn seconds(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "a number of seconds is needed".to_string())?;
     check_seconds(value).map(|()| value)
+}
+
+fn frames(text: &str) -> Result<u64, String> {
+    whole(text, 0, u64::MAX)
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    whole(text, 0, i64::MAX as u64)
+}
+
+fn rate(text: &str) -> Result<u32, String> {
+    whole(text, 1, 1_000_000_000).map(|n| n as u32)
+}
+
+fn threads(text: &str) -> Result<u32, String> {
+    whole(text, 0, 1024).map(|n| n as u32)
+}
+
+/// A whole number in a range, refused in words of the user's world.
+fn whole(text: &str, low: u64, high: u64) -> Result<u64, String> {
+    let value = text.parse().ok().filter(|n| (low..=high).contains(n));
+    value.ok_or_else(|| format!("a whole number from {low} to {high} is needed"))
 }
 
 /// Version, precision and the instruction set that this machine has.

@@ -1,6 +1,7 @@
 //! `mrtphys run`: simulate without a window.
 
 use crate::cast::Cast;
+use crate::check;
 use crate::cli::RunArgs;
 use crate::events::Events;
 use crate::exit::{Failure, Outcome, warn};
@@ -40,6 +41,9 @@ fn run_ready(args: &RunArgs, quiet: bool, threads: usize, mut ready: Ready) -> O
     let plan = Plan::new(ready.end, beat, steps_before, time).map_err(Failure::Wrong)?;
     if plan.steps_left() == 0 && args.resume.is_some() {
         warn(&format!("the snapshot is at {time} s, which is the end of this run or after it: no step is made"));
+    }
+    if args.resume.is_none() {
+        check::warn_of_overlaps(&ready.scene, &mut ready.world, &ready.cast);
     }
     let mut files = Files::open(args, &ready)?;
     let mut progress = Progress::new(quiet, plan.steps_left());

@@ -67,7 +67,7 @@ fn head(out: &mut String, world: &World, facts: &Facts<'_>) -> std::fmt::Result 
 
 fn energy(out: &mut String, world: &World, scale: &Scale) -> std::fmt::Result {
     let (start, end) = (world.initial_energy(), world.energy());
-    writeln!(out, "energy [J]     {:<12} {:>22} {:>22} {:>12}", "", "start", "end", "change")?;
+    writeln!(out, "energy [J]     {:<12} {:>22} {:>22} {:>14}", "", "start", "end", "change")?;
     let kinds = [
         ("linear", start.linear, end.linear),
         ("rotational", start.rotational, end.rotational),
@@ -75,7 +75,7 @@ fn energy(out: &mut String, world: &World, scale: &Scale) -> std::fmt::Result {
         ("total", start.total(), end.total()),
     ];
     for (name, start, end) in kinds {
-        writeln!(out, "               {name:<12} {:>22} {:>22} {:>12}", brief(start), brief(end), change(start, end))?;
+        writeln!(out, "               {name:<12} {:>22} {:>22} {:>14}", brief(start), brief(end), change(start, end))?;
     }
     let entries = world.ledger().entries();
     for (i, (name, value)) in entries.iter().filter(|e| e.1 != 0.0).enumerate() {
@@ -113,19 +113,15 @@ fn speed(out: &mut String, world: &World, facts: &Facts<'_>, steps: u64) -> std:
     writeln!(out, "speed          {} steps/s, {} body steps/s; {wall} s on {threads}", brief(rate), brief(bodies))
 }
 
-/// The change relative to the start, where there was something.
+/// The change in the unit of the energies, so that the ledger's entries add up to that of the total.
 fn change(start: f64, end: f64) -> String {
-    if start == end {
-        "0".into()
-    } else if start == 0.0 {
-        "-".into()
-    } else {
-        format!("{:+.2e}", (end - start) / start.abs())
-    }
+    let change = end - start;
+    let sign = if change > 0.0 { "+" } else { "" };
+    format!("{sign}{}", brief(change))
 }
 
 /// Six digits, in the form that is shorter to read.
-fn brief(x: f64) -> String {
+pub fn brief(x: f64) -> String {
     let size = x.abs();
     if x == 0.0 {
         "0".into()
@@ -178,10 +174,10 @@ mod tests {
     }
 
     #[test]
-    fn a_change_is_relative() {
+    fn a_change_is_told_in_joules() {
         assert_eq!(
-            [change(2.0, 1.0), change(-2.0, -1.0), change(0.0, 1.0), change(3.0, 3.0)],
-            ["-5.00e-1", "+5.00e-1", "-", "0"]
+            [change(2.0, 0.5), change(-2.0, -1.0), change(0.0, 1e-9), change(3.0, 3.0)],
+            ["-1.5", "+1", "+1.00000e-9", "0"]
         );
     }
 

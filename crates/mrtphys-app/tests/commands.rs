@@ -131,3 +131,53 @@ fn a_full_or_closed_standard_output_ends_with_2() {
     assert!(done.err.contains("standard output"), "{}", done.err);
     assert_eq!(folder.json("r.json")["steps"], 480, "the report is written nonetheless");
 }
+
+#[test]
+fn the_help_says_of_every_command_whether_this_version_has_it() {
+    let folder = Folder::with_scenes("has");
+    let help = folder.run("--help").expect(0).out;
+    for command in ["view", "render", "experiment", "validate", "bench", "run", "check", "scenes", "schema"] {
+        let line = help.lines().find(|l| l.trim_start().starts_with(&format!("{command} "))).unwrap();
+        // Something no command can do, so that none does anything.
+        let refused = folder.run(&format!("{command} --no-such-thing"));
+        assert_eq!(line.contains("not in this version"), refused.err.contains("not in this version"), "{line}");
+    }
+}
+
+#[test]
+fn numbers_that_are_no_whole_ones_are_refused_in_plain_words() {
+    let folder = Folder::with_scenes("whole");
+    for (option, range) in [
+        ("--frames -1", "from 0 to 18446744073709551615"),
+        ("--seed -1", "from 0 to 9223372036854775807"),
+        ("--fps 59.94", "from 1 to 1000000000"),
+        ("--steps-per-frame 0", "from 1 to 1000000000"),
+        ("--threads 1025", "from 0 to 1024"),
+    ] {
+        folder.run(&format!("run gas.toml {option}")).refused(&["a whole number", range]);
+    }
+}
+
+#[test]
+fn a_run_that_starts_with_overlaps_says_so_and_is_the_same_run() {
+    let folder = Folder::with_scenes("overlap");
+    let two = |x: f64| {
+        format!(
+            "format = 1\n[simulation]\nseconds = 0.1\n[[body]]\nname = 'a'\nshape = {{ kind = 'sphere', radius = 0.5 }}\n\
+             [[body]]\nname = 'b'\nshape = {{ kind = 'sphere', radius = 0.5 }}\nposition = [{x:?}, 0, 0]\n"
+        )
+    };
+    folder.put("apart.toml", &two(1.0));
+    folder.put("deep.toml", &two(0.75));
+    let apart = folder.run("run apart.toml --quiet").expect(0);
+    assert_eq!(apart.err, "");
+    let deep = folder.run("run deep.toml --quiet").expect(0);
+    assert!(deep.err.contains("warning: 'a' and 'b' overlap by 0.25 m at the start"), "{}", deep.err);
+    assert!(deep.err.contains("mrtphys check deep.toml"), "{}", deep.err);
+    // What a run goes on from is no start.
+    folder.run("run deep.toml --quiet --frames 2 --snapshot s").expect(0);
+    assert_eq!(folder.run("run deep.toml --quiet --resume s").expect(0).err, "");
+    let one = "format = 1\n[[boundary]]\nkind = 'plane'\nnormal = [0, 1, 0]\n";
+    folder.put("one.toml", one);
+    assert_eq!(folder.run("check one.toml").expect(0).out, "one.toml: sound; 0 bodies, 1 boundary\n");
+}

@@ -1,6 +1,6 @@
 //! Fields of a scene, put into its world.
 
-use crate::format::read::Findings;
+use crate::format::read::{self, Findings};
 use crate::names::Names;
 use crate::scene::{FlowKind, ForceKind, Scene, ScopeDesc};
 use mrtphys::error::Error;
@@ -16,7 +16,7 @@ use std::sync::Arc;
 pub(crate) fn add_all(scene: &Scene, names: &Names, world: &mut World, found: &mut Findings) {
     for (i, f) in scene.force_fields.iter().enumerate() {
         let object = format!("force_field {i}");
-        let Some(scope) = scope(&object, &f.scope, names, found) else { continue };
+        let Some(scope) = scope(&object, &f.scope, (scene, names), found) else { continue };
         let added = f.kind.build().and_then(|field| world.add_force(field, scope));
         if let Err(e) = added {
             found.push(f.scope.span, format!("{object}: {e}"));
@@ -24,7 +24,7 @@ pub(crate) fn add_all(scene: &Scene, names: &Names, world: &mut World, found: &m
     }
     for (i, f) in scene.flow_fields.iter().enumerate() {
         let object = format!("flow_field {i}");
-        let Some(scope) = scope(&object, &f.scope, names, found) else { continue };
+        let Some(scope) = scope(&object, &f.scope, (scene, names), found) else { continue };
         let added = f.kind.build().and_then(|field| world.add_flow(field, scope));
         if let Err(e) = added {
             found.push(f.scope.span, format!("{object}: {e}"));
@@ -33,13 +33,13 @@ pub(crate) fn add_all(scene: &Scene, names: &Names, world: &mut World, found: &m
 }
 
 /// The bodies that a field's names stand for.
-fn scope(object: &str, desc: &ScopeDesc, names: &Names, found: &mut Findings) -> Option<Scope> {
+fn scope(object: &str, desc: &ScopeDesc, (scene, names): (&Scene, &Names), found: &mut Findings) -> Option<Scope> {
     let mut scope = Scope { without_reaction: !desc.reaction, ..Scope::default() };
     let mut good = true;
     if let Some(name) = &desc.carrier {
         scope.carrier = names.body(name);
         if scope.carrier.is_none() {
-            found.push(desc.span, format!("{object}: body: there is no body '{name}'"));
+            found.push(desc.span, format!("{object}: body: there is no body '{name}'{}", tip(name, scene)));
             good = false;
         }
     }
@@ -49,7 +49,9 @@ fn scope(object: &str, desc: &ScopeDesc, names: &Names, found: &mut Findings) ->
             match names.bodies_of(name) {
                 Some(ids) => bodies.extend_from_slice(ids),
                 None => {
-                    found.push(desc.span, format!("{object}: only: there is no body, lattice or body table '{name}'"));
+                    let tip = tip(name, scene);
+                    let what = format!("{object}: only: there is no body, lattice or body table '{name}'{tip}");
+                    found.push(desc.span, what);
                     good = false;
                 }
             }
@@ -60,6 +62,16 @@ fn scope(object: &str, desc: &ScopeDesc, names: &Names, found: &mut Findings) ->
     }
     good.then_some(scope)
 }
+
+/// The body, lattice or table that was probably meant.
+fn tip(name: &str, scene: &Scene) -> String {
+    // Nobody reads through a million names to find a slip of the finger.
+    let known: Vec<&str> = scene.contents.iter().take(MOST_COMPARED).map(|c| c.name()).collect();
+    read::tip(name, &known)
+}
+
+/// How many names are looked at for a suggestion.
+const MOST_COMPARED: usize = 10_000;
 
 impl ForceKind {
     /// The field.

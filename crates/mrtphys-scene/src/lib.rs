@@ -2,6 +2,36 @@
 //!
 //! [`Scene::load`] reads, [`Scene::build`] makes the world, [`to_toml`] writes. The language is documented in
 //! `docs/manual/scene-language.md`; [`schema`] is its JSON schema.
+//!
+//! ```
+//! use mrtphys_scene::{Scene, to_toml};
+//!
+//! let text = "
+//!     format = 1
+//!     [[force_field]]
+//!     kind = 'earth-gravity'
+//!     [[boundary]]
+//!     kind = 'half-space'
+//!     normal = [0, 1, 0]
+//!     [[body]]
+//!     name = 'ball'
+//!     shape = { kind = 'sphere', radius = 0.1 }
+//!     position = [0, 1, 0]
+//! ";
+//! let scene = Scene::from_text("ball.toml", text)?; // or Scene::load(path)
+//! let mut loaded = scene.build()?;
+//! for _ in 0..60 {
+//!     loaded.world.frame()?;
+//! }
+//! let ball = loaded.names.body("ball").expect("a name of the scene");
+//! println!("after {} s the ball is at {:?}", loaded.world.time(), loaded.world.body(ball)?.position);
+//! println!("{}", to_toml(&loaded)?); // the scene that it is now
+//!
+//! // What is wrong is said with line and column.
+//! let wrong = Scene::from_text("wrong.toml", "format = 1\nbodi = 3\n").unwrap_err();
+//! assert_eq!(wrong.list[0].headline(), "wrong.toml:2:1: scene: unknown key 'bodi', did you mean 'body'?");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 #![warn(missing_docs)]
 
 // From text to a description.

@@ -110,7 +110,7 @@ fn scene(source: &Source, r: &Record, found: &mut Findings) -> Scene {
         flow_fields: r.tables("flow_field").iter().map(flow_field).collect(),
         materials: r.map("material").iter().map(|(name, m)| material(name, m)).collect(),
         contents: contents(r, found),
-        boundaries: r.tables("boundary").iter().enumerate().map(|(i, b)| boundary(i, b)).collect(),
+        boundaries: r.tables("boundary").iter().enumerate().map(|(i, b)| boundary(i, b, found)).collect(),
         camera: r.table("camera").map(camera),
         lights: r.tables("light").iter().map(light).collect(),
     }
@@ -354,10 +354,13 @@ fn body_table(place: usize, r: &Record) -> BodyTableDesc {
     }
 }
 
-fn boundary(place: usize, r: &Record) -> BoundaryDesc {
+fn boundary(place: usize, r: &Record, found: &mut Findings) -> BoundaryDesc {
     let point = r.vector("point").unwrap_or(Vec3::ZERO);
     let normal = r.vector("normal").unwrap_or(Vec3::ZERO);
     let (min, max) = corners(r);
+    if r.case_name() == "box" {
+        check_corners(&format!("boundary '{}'", name_of(r, "boundary", place)), min, max, r, found);
+    }
     let kind = match r.case_name() {
         "half-space" => BoundaryKind::HalfSpace { point, normal },
         "plane" => BoundaryKind::Plane { point, normal },
@@ -397,7 +400,9 @@ fn check_names(scene: &Scene, record: &Record, found: &mut Findings) {
             && !known(&name)
         {
             let at = r.span_of("material");
-            found.push(at, format!("{object}: material: there is no material '{name}'"));
+            let names: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
+            let tip = read::tip(&name, &names);
+            found.push(at, format!("{object}: material: there is no material '{name}'{tip}"));
         }
     });
 }

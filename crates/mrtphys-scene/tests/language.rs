@@ -296,7 +296,7 @@ fn wrong_types_ranges_and_missing_keys_name_object_field_and_place() {
         ],
     );
     assert_wrong("", &["scene.toml:1:1: scene: key 'format' is missing"]);
-    assert_wrong("format = 2\n", &["scene.toml:1:10: scene: format = 2 is out of range: 1 to 1"]);
+    assert_wrong("format = 2\n", &["scene.toml:1:10: scene: format = 2: not in this version; there is 1"]);
     assert_wrong(
         "format = 1\n[body]\n",
         &["scene.toml:2:1: scene: body: expected a list of tables, found a table: write [[body]] instead of [body]"],
@@ -343,7 +343,7 @@ fn what_only_the_world_can_tell_names_the_object_too() {
     );
     assert_wrong(
         "format = 1\n[[body]]\nname = 'sheet'\nshape = { kind = 'quadrangle', points = [[0,0,0], [1,0,0], [1,1,0], [0,1,0]] }\ndensity = 1.0\n",
-        &["scene.toml:2:1: body 'sheet': density = 1 is out of range: a mass: the shape has no volume"],
+        &["scene.toml:2:1: body 'sheet': density = 1 is out of range: a mass instead: the shape has no volume"],
     );
     assert_wrong(
         &format!("{BALL}[[body]]\nname = 'ball'\nshape = {{ kind = 'sphere', radius = 1 }}\n"),
@@ -352,8 +352,8 @@ fn what_only_the_world_can_tell_names_the_object_too() {
     assert_wrong(
         &format!("{BALL}[[force_field]]\nbody = 'bell'\nonly = ['boll']\n"),
         &[
-            "scene.toml:5:1: force_field 0: body: there is no body 'bell'",
-            "scene.toml:5:1: force_field 0: only: there is no body, lattice or body table 'boll'",
+            "scene.toml:5:1: force_field 0: body: there is no body 'bell', did you mean 'ball'?",
+            "scene.toml:5:1: force_field 0: only: there is no body, lattice or body table 'boll', did you mean 'ball'?",
         ],
     );
     assert_wrong(
@@ -394,4 +394,46 @@ fn at_most_twenty_errors_are_shown_and_the_rest_counted() {
     assert_eq!((e.list.len(), e.more), (20, 30));
     assert_eq!(e.list[1].headline(), "scene.toml:5:13: light 1: direction: a direction must not be [0, 0, 0]");
     assert!(e.to_string().ends_with("and 30 more"));
+}
+
+#[test]
+fn names_that_are_not_there_come_with_a_suggestion() {
+    let oiled =
+        "format = 1\n[material.rubber]\n[[body]]\nmaterial = 'ruber'\nshape = { kind = 'sphere', radius = 1 }\n";
+    assert_wrong(
+        oiled,
+        &["scene.toml:4:12: body 'body0': material: there is no material 'ruber', did you mean 'rubber'?"],
+    );
+    assert_wrong(
+        &format!(
+            "{BALL}[[force_field]]\nkind = 'point'\nbody = 'bal'\nstrength = 1\n[[flow_field]]\nonly = ['bll', 'x']\n"
+        ),
+        &[
+            "scene.toml:5:1: force_field 0: body: there is no body 'bal', did you mean 'ball'?",
+            "scene.toml:9:1: flow_field 0: only: there is no body, lattice or body table 'bll', did you mean 'ball'?",
+            "scene.toml:9:1: flow_field 0: only: there is no body, lattice or body table 'x'",
+        ],
+    );
+}
+
+#[test]
+fn a_box_that_is_inside_out_is_told_at_its_corner() {
+    assert_wrong(
+        "format = 1\n[[boundary]]\nname = 'tank'\nmin = [0, 2, 0]\nmax = [1, 1, 1]\n",
+        &["scene.toml:5:7: boundary 'tank': max must be greater than min along every axis"],
+    );
+    assert_wrong(
+        "format = 1\n[[boundary]]\nmin = [0, 2, 0]\n",
+        &["scene.toml:2:1: boundary 'boundary0': max must be greater than min along every axis"],
+    );
+}
+
+#[test]
+fn a_broad_phase_given_too_much_says_what_is_too_much() {
+    for (text, message) in
+        [("sorted-grid:3", "'3' is more than 'sorted-grid' can be given"), ("adaptive-tree:4:6:7", "'7' is more than")]
+    {
+        let found = wrong(&format!("format = 1\n[simulation]\nbroad_phase = '{text}'\n"));
+        assert!(found.len() == 1 && found[0].contains(message), "{found:?}");
+    }
 }

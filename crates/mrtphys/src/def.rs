@@ -188,7 +188,7 @@ impl std::str::FromStr for BroadPhaseKind {
         };
         match parts.next() {
             None => Ok(kind),
-            Some(extra) => Err(format!("nothing may follow '{s}': '{extra}'")),
+            Some(extra) => Err(format!("'{extra}' is more than '{name}' can be given")),
         }
     }
 }

@@ -226,6 +226,11 @@ fn unknown_key(spec: &Table, case: Option<&'static Case>, name: &str) -> String 
     }
 }
 
+/// `, did you mean 'rubber'?`, or nothing.
+pub(crate) fn tip(name: &str, known: &[&str]) -> String {
+    nearest(name, known).map(|best| format!(", did you mean '{best}'?")).unwrap_or_default()
+}
+
 /// The known name most like this one, if any is.
 fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
     const LIKE: f64 = 0.8;

@@ -127,6 +127,10 @@ pub(crate) fn number(v: &DeValue, range: &Range) -> Checked<f64> {
 pub(crate) fn integer(v: &DeValue, low: i64, high: i64) -> Checked<i64> {
     let DeValue::Integer(i) = v else { return Err(wrong_type("an integer", v)) };
     let x = parse_integer(i)?;
+    if low == high && x != low {
+        // The version of the format: the one number there is.
+        return Err(Refusal::joined(format!(" = {x}: not in this version; there is {low}")));
+    }
     if x < low || x > high {
         return Err(Refusal::joined(format!(" = {x} is out of range: {low} to {high}")));
     }

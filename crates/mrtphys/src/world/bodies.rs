@@ -493,7 +493,7 @@ fn mass_value(object: &str, mass: Mass, volume: Real) -> Result<Real> {
         return Err(Error::NonFinite { object: object.into(), field });
     }
     let expected = match mass {
-        Mass::Density(_) if volume == 0.0 => "a mass: the shape has no volume",
+        Mass::Density(_) if volume == 0.0 => "a mass instead: the shape has no volume",
         _ => "positive, giving a mass from 1e-100 to 1e100 kg (a body of infinite mass is a fixed one)",
     };
     if !(SMALLEST..=LARGEST).contains(&value) {

@@ -8,7 +8,7 @@ use crate::narrow::{Placed, Touch, Touches};
 use crate::shape::Polyhedron;
 
 /// Reports the contact of a polyhedron (first) with a half-space or a limit quadrangle, which acts as the half-space behind
-/// it; the normal leads into the wall. See [`corners_against_wall`].
+/// it; the normal leads into the wall. See `corners_against_wall`.
 pub fn touch(a: &Placed<'_>, b: &Placed<'_>, out: &mut Touches) {
     match (a.shape.downcast::<Polyhedron>(), normal_of(b)) {
         (Some(p), Some(normal)) => corners_against_wall(a, &p.corners, (b.position, normal), out),
