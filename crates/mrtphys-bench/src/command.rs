@@ -59,7 +59,7 @@ fn parse(args: &[String]) -> Result<Options, String> {
     while let Some(arg) = rest.next() {
         let mut value = || rest.next().ok_or(format!("{arg} needs a value"));
         match arg.as_str() {
-            "--broad-phase" => options.broad_phase = value()?.parse().map_err(|e| format!("--broad-phase: {e}"))?,
+            "--broad-phase" => options.broad_phase = value()?.parse().map_err(|e| format!("--broad-phase: not one of {e}"))?,
             "--threads" => options.threads = number(arg, value()?)? as usize,
             "--rate" => options.rate = number(arg, value()?)? as u32,
             "--warm-up" => options.warm_up = Some(number(arg, value()?)?),
@@ -88,21 +88,27 @@ fn scene(name: &str) -> Result<(GasShape, u32), String> {
 
 fn run_all(options: &Options) -> Result<(), String> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().map_err(|e| e.to_string())?;
-    println!(
+    say(&format!(
         "mrtphys {} | {} steps/s | {} | {} thread(s) | median of the timed steps",
         env!("CARGO_PKG_VERSION"),
         options.rate,
         options.broad_phase,
         options.threads
-    );
-    println!("{}", table::head());
+    ))?;
+    say(&table::head())?;
     for (shape, n, warm_up, timed) in chosen(options) {
         let spec = GasSpec { shape, n, rate: options.rate.max(1), broad_phase: options.broad_phase };
         let window = Window { warm_up: options.warm_up.unwrap_or(warm_up), timed: options.timed.unwrap_or(timed) };
         let measurement = pool.install(|| measure(&spec, window)).map_err(|e| e.to_string())?;
-        println!("{}", table::line(&measurement));
+        say(&table::line(&measurement))?;
     }
     Ok(())
+}
+
+/// A line on stdout. A closed pipe ends the run in words.
+fn say(line: &str) -> Result<(), String> {
+    use std::io::Write;
+    writeln!(std::io::stdout().lock(), "{line}").map_err(|e| format!("stdout: {e}"))
 }
 
 fn chosen(options: &Options) -> Vec<(GasShape, u32, f64, f64)> {
