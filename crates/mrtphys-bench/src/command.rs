@@ -59,7 +59,9 @@ fn parse(args: &[String]) -> Result<Options, String> {
     while let Some(arg) = rest.next() {
         let mut value = || rest.next().ok_or(format!("{arg} needs a value"));
         match arg.as_str() {
-            "--broad-phase" => options.broad_phase = value()?.parse().map_err(|e| format!("--broad-phase: not one of {e}"))?,
+            "--broad-phase" => {
+                options.broad_phase = value()?.parse().map_err(|e| format!("--broad-phase: not one of {e}"))?
+            }
             "--threads" => options.threads = number(arg, value()?)? as usize,
             "--rate" => options.rate = number(arg, value()?)? as u32,
             "--warm-up" => options.warm_up = Some(number(arg, value()?)?),
