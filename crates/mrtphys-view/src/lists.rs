@@ -158,8 +158,13 @@ impl Lists {
             }
             let [r, g, b] = wall.color.unwrap_or(colors.wall);
             let color = [r, g, b, WALL_OPACITY];
+            // The shader takes the normal from the corners: counter-clockwise seen from the front.
+            let mut corners = wall.corners;
+            if (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(wall.normal) < 0.0 {
+                corners.reverse();
+            }
             let kind = [f32::from(wall.endless.is_some()), 1.0, (wall.endless.unwrap_or(0.0) / frame.unit) as f32, 0.0];
-            self.face(frame, wall.corners, kind, color);
+            self.face(frame, corners, kind, color);
         }
     }
 

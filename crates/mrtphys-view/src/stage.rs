@@ -76,8 +76,6 @@ impl Stage {
         let camera = loaded.scene.camera.map(Camera::from).unwrap_or_else(|| {
             let mut camera = Camera { eye: FROM, look_at: Vec3::ZERO, up: Vec3::Y, fov_deg: 35.0 };
             camera.fit(&bounds, 1.0);
-            // The sphere round a box is larger than the box: without the air about it.
-            camera.dolly(0.04);
             camera
         });
         let lights = &loaded.scene.lights;

@@ -72,6 +72,10 @@ fn line(
     return stroke(number, start.xyz, end, start.w, vec4<f32>(to_light(color.rgb), color.a), 1.0004);
 }
 
+fn brightness(c: vec3<f32>) -> f32 {
+    return dot(c, vec3<f32>(0.2126, 0.7152, 0.0722));
+}
+
 // An edge of a body.
 @vertex
 fn edge(
@@ -84,6 +88,9 @@ fn edge(
 ) -> Stroke {
     let a = place.xyz + place.w * rotate(rotation, start);
     let b = place.xyz + place.w * rotate(rotation, end);
-    let rgb = mix(to_light(color.rgb), picture.ink.rgb, 0.12);
+    let light = to_light(color.rgb);
+    // Colors close to the paper's are inked: white on white would not be seen.
+    let contrast = abs(sqrt(brightness(light)) - sqrt(brightness(picture.paper.rgb)));
+    let rgb = mix(light, picture.ink.rgb, 0.10 + 0.55 * (1.0 - smoothstep(0.05, 0.5, contrast)));
     return stroke(number, a, b, picture.size.z, vec4<f32>(rgb, color.a), 1.0004);
 }

@@ -51,6 +51,8 @@ fn face(in: Face) -> @location(0) vec4<f32> {
     }
     if in.kind.y > 0.5 {
         let facing = dot(in.normal, picture.lamps[0].direction.xyz);
+        // A little light and shade, so that the floor and the walls are told apart.
+        color = vec4<f32>(color.rgb * (0.80 + 0.22 * max(facing, 0.0)), color.a);
         let shade = (1.0 - lit(in.position, in.normal)) * smoothstep(0.0, 0.35, facing);
         let dark = 0.42 * shade * select(1.0, 1.0 - smoothstep(0.35, 1.0, length(in.on_face)), in.kind.x > 0.5);
         // A shadow is seen even on a face that is hardly there.
