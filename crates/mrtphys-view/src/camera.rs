@@ -13,6 +13,8 @@ const POLE: Real = 0.02;
 const ANGLE_OF_A_DRAG: Real = std::f64::consts::PI;
 /// A picture's height of dragging changes the distance by this power of e.
 const DOLLY_OF_A_DRAG: Real = 2.0;
+/// What fits into the picture leaves some air about it.
+const AIR: Real = 1.06;
 /// A distance is multiplied or divided by no more than this at once: a wild mouse is no reason to be lost.
 const MOST_AT_ONCE: Real = 20.0;
 
@@ -114,19 +116,25 @@ impl Camera {
         }
     }
 
-    /// Looks at a box from the same side, from where its surrounding sphere just fits into a picture of this width to height.
+    /// Looks at a box from the same side, from where all its corners just fit into a picture of this width to height.
     pub fn fit(&mut self, bounds: &Aabb, aspect: Real) {
-        let radius = 0.5 * (bounds.max - bounds.min).length();
-        let center = (bounds.min + bounds.max) * 0.5;
-        if !(radius.is_finite() && center.is_finite()) {
+        let (center, half) = ((bounds.min + bounds.max) * 0.5, (bounds.max - bounds.min) * 0.5);
+        if !(half.is_finite() && center.is_finite()) {
             return;
         }
-        // The narrower of the two angles of view must hold the sphere: sin(angle / 2) = radius / distance.
-        let tan = self.tan_half_fov() * if aspect > 0.0 && aspect < 1.0 { aspect } else { 1.0 };
-        let sin = tan / (1.0 + tan * tan).sqrt();
-        let toward_eye = -self.axes().forward;
+        let Axes { right, up, forward } = self.axes();
+        let (tan, aspect) = (self.tan_half_fov() / AIR, if aspect > 0.0 { aspect } else { 1.0 });
+        // A corner c fits if |c.right| <= aspect tan (distance + c.forward), and so upwards.
+        let needed = |i: usize| {
+            let sign = |bit: usize| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
+            let c = half.mul_elements(Vec3::new(sign(0), sign(1), sign(2)));
+            (c.dot(right).abs() / aspect).max(c.dot(up).abs()) / tan - c.dot(forward)
+        };
+        let distance = (0..8).map(needed).fold(0.0, Real::max);
+        let toward_eye = -forward;
+        let distance = if distance > 0.0 { distance } else { self.distance() };
         self.look_at = center;
-        self.eye = center + toward_eye * if radius > 0.0 { radius / sin } else { self.distance() };
+        self.eye = center + toward_eye * distance;
     }
 
     /// World to clip coordinates, in coordinates relative to `origin` and in units of `unit` metres.
@@ -245,7 +253,7 @@ mod tests {
                 let h = projection.apply(Vec3::new(pick(0), pick(1), pick(2)) - c.look_at);
                 largest = largest.max((h[0] / h[3]).abs()).max((h[1] / h[3]).abs());
             }
-            assert!((0.5..=1.0).contains(&largest), "{aspect}: {largest}");
+            assert!((0.9..=1.0).contains(&largest), "{aspect}: {largest}");
         }
     }
 

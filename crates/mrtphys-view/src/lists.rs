@@ -242,7 +242,7 @@ mod tests {
         let camera = Camera { eye: Vec3::new(0.0, 0.0, 4.0), look_at: Vec3::ZERO, up: Vec3::Y, fov_deg: 45.0 };
         let mut frame = Frame::new(camera, Look::default());
         let ball = |z: f64| frame.instance(Vec3::new(0.0, 0.0, z), 0.5, Quat::IDENTITY, [255; 4]);
-        frame.spheres = [-400.0, 2.0, 0.0, -400.0].into_iter().filter_map(ball).collect();
+        frame.spheres = [-400.0, 3.3, 0.0, -400.0].into_iter().filter_map(ball).collect();
         frame
     }
 

@@ -284,7 +284,7 @@ mod tests {
     fn a_picture_does_not_depend_on_the_unit_of_length() {
         let scene = |k: f64| {
             loaded(&format!(
-                "format = 1\n[[body]]\nshape = {{ kind = \"sphere\", radius = {} }}\nposition = [{}, 0, 0]\n[camera]\neye = [0, 0, {}]\nlook_at = [0, 0, 0]\n",
+                "format = 1\n[[body]]\nshape = {{ kind = \"sphere\", radius = {:e} }}\nposition = [{:e}, 0, 0]\n[camera]\neye = [0, 0, {:e}]\nlook_at = [0, 0, 0]\n",
                 0.5 * k,
                 2.0 * k,
                 8.0 * k

@@ -48,8 +48,8 @@ impl<W: Write> Mp4<W> {
         let bits = f64::from(width) * f64::from(height) * fps * BITS_PER_PIXEL;
         let whole_every = (fps * WHOLE_EVERY).round().max(1.0) as u64;
         let config = EncoderConfig::new()
-            .usage_type(UsageType::ScreenContentRealTime)
-            .rate_control_mode(RateControlMode::Quality)
+            .usage_type(UsageType::CameraVideoRealTime)
+            .rate_control_mode(RateControlMode::Off)
             .skip_frames(false)
             .bitrate(BitRate::from_bps(bits.min(2e8) as u32))
             .max_frame_rate(FrameRate::from_hz(fps as f32))
