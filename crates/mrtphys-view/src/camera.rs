@@ -91,8 +91,8 @@ impl Camera {
         let height = 2.0 * self.distance() * self.tan_half_fov();
         let Axes { right, up, .. } = self.axes();
         let by = (up * finite(dy) - right * finite(dx)) * height;
-        self.eye = self.eye + by;
-        self.look_at = self.look_at + by;
+        self.eye += by;
+        self.look_at += by;
     }
 
     /// Right drag, vertical: approach (down) or recede (up). The point looked at is never reached.

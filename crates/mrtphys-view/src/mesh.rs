@@ -75,8 +75,8 @@ impl Mesh {
     /// A quadrangle, divided by `reach`: two faces back to back.
     pub fn quadrangle(q: &Quadrangle, reach: Real) -> Mesh {
         let mut c = q.corners().map(|c| c / reach);
-        let mut mesh = Mesh::default();
-        mesh.edges = (0..4).map(|i| [single(c[i]), single(c[(i + 1) % 4])]).collect();
+        let edges = (0..4).map(|i| [single(c[i]), single(c[(i + 1) % 4])]).collect();
+        let mut mesh = Mesh { edges, ..Mesh::default() };
         mesh.face(&c);
         c.reverse();
         mesh.face(&c);

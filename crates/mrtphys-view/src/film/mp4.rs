@@ -6,16 +6,14 @@ use crate::image::Image;
 use muxide::api::{Muxer, MuxerBuilder, VideoCodec};
 use openh264::OpenH264API;
 use openh264::encoder::{
-    BitRate, Encoder, EncoderConfig, FrameRate, FrameType, IntraFramePeriod, QpRange, RateControlMode, SpsPpsStrategy,
+    BitRate, Encoder, EncoderConfig, FrameRate, FrameType, IntraFramePeriod, RateControlMode, SpsPpsStrategy,
     UsageType, VuiConfig,
 };
 use openh264::formats::YUVBuffer;
 use std::io::Write;
 
-/// Quantiser: 0 is lossless-like, 51 is mud. Thin lines and plain surfaces still look clean here.
-const QUANTIZER: QpRange = QpRange::new(14, 24);
-/// A whole picture this often \[s\]: one can jump there in a player.
-const WHOLE_EVERY: f64 = 2.0;
+/// A whole picture this often \[s\]: one can jump there in a player, and what has moved leaves no specks for longer.
+const WHOLE_EVERY: f64 = 1.0;
 /// Bits a pixel that the encoder aims at before the quantiser's range binds.
 const BITS_PER_PIXEL: f64 = 0.3;
 
@@ -49,11 +47,11 @@ impl<W: Write> Mp4<W> {
         let whole_every = (fps * WHOLE_EVERY).round().max(1.0) as u64;
         let config = EncoderConfig::new()
             .usage_type(UsageType::CameraVideoRealTime)
+            // The same quantizer for every picture: plain drawings need few bits anyway.
             .rate_control_mode(RateControlMode::Off)
             .skip_frames(false)
             .bitrate(BitRate::from_bps(bits.min(2e8) as u32))
             .max_frame_rate(FrameRate::from_hz(fps as f32))
-            .qp(QUANTIZER)
             .sps_pps_strategy(SpsPpsStrategy::ConstantId)
             .intra_frame_period(IntraFramePeriod::from_num_frames(whole_every as u32))
             .scene_change_detect(false)
