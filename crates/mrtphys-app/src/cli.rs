@@ -5,7 +5,8 @@
 use crate::choices;
 use crate::exit::{Failure, Outcome, complain};
 use crate::plan::{End, check_seconds};
-use crate::{bench, check, list, output, run};
+use crate::render_args::RenderArgs;
+use crate::{bench, check, list, output, render, run};
 use clap::{Args, Parser, Subcommand};
 use mrtphys::{Algorithm, BroadPhaseKind, FrictionLaw, ImpactMode};
 use std::ffi::OsString;
@@ -30,8 +31,9 @@ enum Command {
     /// Simulate without a window: progress on stderr, summary on stdout
     #[command(allow_negative_numbers = true)]
     Run(Box<RunArgs>),
-    /// Pictures without a window (not in this version)
-    Render(Later),
+    /// Pictures and films without a window: .png, .gif, .mp4, or a folder of pictures
+    #[command(allow_negative_numbers = true)]
+    Render(Box<RenderArgs>),
     /// Parse and validate a scene, report what overlaps at the start
     Check {
         /// A scene file, or the name of a gallery scene
@@ -68,31 +70,11 @@ pub struct RunArgs {
     /// Run to the end of this frame
     #[arg(long, value_name = "N", value_parser = frames)]
     pub frames: Option<u64>,
-    /// Time-stepping algorithm: fixed-step
-    #[arg(long, value_name = "NAME", value_parser = choices::algorithm)]
-    pub algorithm: Option<Algorithm>,
-    /// brute-force, regular-grid[:RESOLUTION], adaptive-tree[:OBJECTS_PER_CELL[:MAX_DEPTH]] or sorted-grid
-    #[arg(long, value_name = "NAME", value_parser = choices::broad_phase)]
-    pub broad_phase: Option<BroadPhaseKind>,
-    /// Simultaneous impacts: sequential or reflection
-    #[arg(long, value_name = "NAME", value_parser = choices::impact)]
-    pub impact: Option<ImpactMode>,
-    /// frictionless, kurtenbach, kurtenbach-literal, velocity, rough or coulomb
-    #[arg(long, value_name = "NAME", value_parser = choices::friction_law)]
-    pub friction_law: Option<FrictionLaw>,
+    #[command(flatten)]
+    pub simulation: SimulationArgs,
     /// Frames per second of simulated time
     #[arg(long, value_name = "N", value_parser = rate)]
     pub fps: Option<u32>,
-    /// Physical steps per frame
-    #[arg(long, value_name = "N", value_parser = rate)]
-    pub steps_per_frame: Option<u32>,
-    /// Threads to compute with; 0: one for each core. The result is the same for any number
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
-    pub threads: u32,
-    /// Seed of the scene's random draws
-    // What a scene text can say too: TOML has signed numbers.
-    #[arg(long, value_name = "N", value_parser = seed)]
-    pub seed: Option<u64>,
     /// Write the final state, energies and counters (JSON, or records with the ending .bin)
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
@@ -111,6 +93,33 @@ pub struct RunArgs {
     /// Write the world at the end
     #[arg(long, value_name = "FILE")]
     pub snapshot: Option<PathBuf>,
+}
+
+/// How a scene is simulated: options of every command that does.
+#[derive(Args, Debug)]
+pub struct SimulationArgs {
+    /// Time-stepping algorithm: fixed-step
+    #[arg(long, value_name = "NAME", value_parser = choices::algorithm)]
+    pub algorithm: Option<Algorithm>,
+    /// brute-force, regular-grid[:RESOLUTION], adaptive-tree[:OBJECTS_PER_CELL[:MAX_DEPTH]] or sorted-grid
+    #[arg(long, value_name = "NAME", value_parser = choices::broad_phase)]
+    pub broad_phase: Option<BroadPhaseKind>,
+    /// Simultaneous impacts: sequential or reflection
+    #[arg(long, value_name = "NAME", value_parser = choices::impact)]
+    pub impact: Option<ImpactMode>,
+    /// frictionless, kurtenbach, kurtenbach-literal, velocity, rough or coulomb
+    #[arg(long, value_name = "NAME", value_parser = choices::friction_law)]
+    pub friction_law: Option<FrictionLaw>,
+    /// Physical steps per frame
+    #[arg(long, value_name = "N", value_parser = rate)]
+    pub steps_per_frame: Option<u32>,
+    /// Threads to compute with; 0: one for each core. The result is the same for any number
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
+    pub threads: u32,
+    /// Seed of the scene's random draws
+    // What a scene text can say too: TOML has signed numbers.
+    #[arg(long, value_name = "N", value_parser = seed)]
+    pub seed: Option<u64>,
     /// Go on from a snapshot of the same scene instead of its start
     #[arg(long, value_name = "FILE")]
     pub resume: Option<PathBuf>,
@@ -123,7 +132,7 @@ impl RunArgs {
     }
 }
 
-fn seconds(text: &str) -> Result<f64, String> {
+pub fn seconds(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "a number of seconds is needed".to_string())?;
     check_seconds(value).map(|()| value)
 }
@@ -189,10 +198,7 @@ fn dispatch(cli: Cli) -> Outcome {
     match cli.command {
         None => Err(Failure::not_yet("the interactive testbed", instead)),
         Some(Command::View(_)) => Err(Failure::not_yet("'view'", instead)),
-        Some(Command::Render(_)) => Err(Failure::not_yet(
-            "'render'",
-            "'mrtphys run SCENE --trajectory FILE.csv' writes every body at every frame",
-        )),
+        Some(Command::Render(args)) => render::render(&args, cli.quiet),
         Some(Command::Experiment(_)) => Err(Failure::not_yet(
             "'experiment'",
             "'mrtphys run SCENE --broad-phase NAME --report FILE.json' counts one case",

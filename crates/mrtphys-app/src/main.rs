@@ -19,6 +19,13 @@ mod events;
 mod trajectory;
 mod summary;
 
+mod render_args;
+#[cfg(feature = "view")]
+mod render;
+#[cfg(not(feature = "view"))]
+#[path = "render_none.rs"]
+mod render;
+
 mod check;
 mod list;
 mod bench;

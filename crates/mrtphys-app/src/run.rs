@@ -22,11 +22,14 @@ const LOOKS: u64 = 64;
 /// Runs a scene.
 pub fn run(args: &RunArgs, quiet: bool) -> Outcome {
     interrupt::listen()?;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(args.threads as usize)
-        .build()
-        .map_err(|e| Failure::Stopped(format!("cannot start {} threads: {e}", args.threads)))?;
+    let pool = threads(args.simulation.threads)?;
     pool.install(|| run_here(args, quiet, pool.current_num_threads()))
+}
+
+/// Threads to compute with; 0: one for each core.
+pub fn threads(count: u32) -> Outcome<rayon::ThreadPool> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count as usize).build();
+    pool.map_err(|e| Failure::Stopped(format!("cannot start {count} threads: {e}")))
 }
 
 fn run_here(args: &RunArgs, quiet: bool, threads: usize) -> Outcome {
@@ -39,10 +42,10 @@ fn run_ready(args: &RunArgs, quiet: bool, threads: usize, mut ready: Ready) -> O
     let beat = Beat { fps: settings.fps, steps_per_frame: settings.steps_per_frame };
     let (steps_before, time) = (ready.world.steps(), ready.world.time());
     let plan = Plan::new(ready.end, beat, steps_before, time).map_err(Failure::Wrong)?;
-    if plan.steps_left() == 0 && args.resume.is_some() {
+    if plan.steps_left() == 0 && args.simulation.resume.is_some() {
         warn(&format!("the snapshot is at {time} s, which is the end of this run or after it: no step is made"));
     }
-    if args.resume.is_none() {
+    if args.simulation.resume.is_none() {
         check::warn_of_overlaps(&ready.scene, &mut ready.world, &ready.cast);
     }
     let mut files = Files::open(args, &ready)?;
@@ -94,7 +97,7 @@ fn check_files(args: &RunArgs) -> Outcome {
     let mut inputs = vec![("the scene", Path::new(&args.scene))];
     check_distinct(&outputs, &inputs)?;
     inputs.clear();
-    inputs.extend(args.resume.as_deref().map(|p| ("--resume", p)));
+    inputs.extend(args.simulation.resume.as_deref().map(|p| ("--resume", p)));
     let streams: Vec<(&str, &Path)> = outputs.into_iter().filter(|(o, _)| *o != "--snapshot").collect();
     check_distinct(&streams, &inputs)
 }

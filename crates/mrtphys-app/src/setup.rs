@@ -2,7 +2,7 @@
 
 use crate::cast::Cast;
 use crate::choices::closest;
-use crate::cli::RunArgs;
+use crate::cli::{RunArgs, SimulationArgs};
 use crate::exit::{Failure, Outcome};
 use crate::plan::End;
 use mrtphys::World;
@@ -61,13 +61,9 @@ pub fn build(scene: &Scene) -> Outcome<(World, Cast)> {
 /// Reads the scene, applies the options, makes the world, and takes up a snapshot.
 pub fn prepare(args: &RunArgs) -> Outcome<Ready> {
     let mut scene = load(&args.scene)?;
-    apply(args, &mut scene);
+    apply(&args.simulation, args.fps, &mut scene);
     let (mut world, cast) = build(&scene)?;
-    if let Some(path) = &args.resume {
-        let wrong = |e: &dyn std::fmt::Display| Failure::Wrong(format!("--resume '{}': {e}", path.display()));
-        let bytes = std::fs::read(path).map_err(|e| wrong(&e))?;
-        world.restore(&bytes).map_err(|e| wrong(&e))?;
-    }
+    take_up(&args.simulation, &mut world)?;
     Ok(Ready {
         scene: args.scene.to_string_lossy().into_owned(),
         title: scene.title.clone(),
@@ -78,14 +74,22 @@ pub fn prepare(args: &RunArgs) -> Outcome<Ready> {
     })
 }
 
+/// Goes on from a snapshot, if an option says so.
+pub fn take_up(args: &SimulationArgs, world: &mut World) -> Outcome {
+    let Some(path) = &args.resume else { return Ok(()) };
+    let wrong = |e: &dyn std::fmt::Display| Failure::Wrong(format!("--resume '{}': {e}", path.display()));
+    let bytes = std::fs::read(path).map_err(|e| wrong(&e))?;
+    world.restore(&bytes).map_err(|e| wrong(&e))
+}
+
 /// Options win over the scene.
-fn apply(args: &RunArgs, scene: &mut Scene) {
+pub fn apply(args: &SimulationArgs, fps: Option<u32>, scene: &mut Scene) {
     let s = &mut scene.settings;
     s.algorithm = args.algorithm.unwrap_or(s.algorithm);
     s.broad_phase = args.broad_phase.unwrap_or(s.broad_phase);
     s.impact = args.impact.unwrap_or(s.impact);
     s.friction_law = args.friction_law.unwrap_or(s.friction_law);
-    s.fps = args.fps.unwrap_or(s.fps);
+    s.fps = fps.unwrap_or(s.fps);
     s.steps_per_frame = args.steps_per_frame.unwrap_or(s.steps_per_frame);
     scene.seed = args.seed.unwrap_or(scene.seed);
 }

@@ -181,6 +181,15 @@ impl World {
         })
     }
 
+    /// Position of the centre of mass \[m\] and orientation: what a picture needs, without the rest of [`Body`].
+    ///
+    /// # Errors
+    /// The handle is not valid.
+    pub fn pose(&self, id: BodyId) -> Result<(Vec3, Quat)> {
+        let slot = self.ids.slot(id, self.tag)?;
+        Ok((self.state.lines[slot].x, self.state.spins[slot].q))
+    }
+
     /// Puts a body elsewhere. The change of its potential energy is booked to `user`.
     ///
     /// # Errors

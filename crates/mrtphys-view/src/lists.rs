@@ -1,0 +1,298 @@
+//! A frame sorted into what is drawn at once: instances by surface, lines, walls. The lists are kept from picture to picture
+//! and allocate nothing once they have grown.
+
+use crate::frame::{Frame, Instance, Mode, Quality};
+use crate::mesh::{FINEST, level_for};
+use crate::overlay::{Block, Line};
+use mrtphys::Vec3;
+use mrtphys::math::Quat;
+use std::ops::Range;
+
+/// Opacity of a boundary's faces.
+const WALL_OPACITY: u8 = 150;
+/// Width of a boundary's edges, to that of the edges of wireframe drawings.
+const WALL_EDGE: f32 = 1.0;
+/// Spheres above this number are triangulated more coarsely: what is lost in each is lost in the crowd.
+const CROWD: usize = 20_000;
+/// Spheres smaller than these radii \[pixels\] in a line drawing get so many levels fewer.
+const LINE_LEVELS: [(f64, u8); 3] = [(5.0, 0), (22.0, 1), (120.0, 2)];
+
+/// A line as the shader takes it.
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct Stroke {
+    start: [f32; 3],
+    width: f32,
+    end: [f32; 3],
+    color: [u8; 4],
+}
+
+/// A face as the shader takes it.
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct Face {
+    corners: [[f32; 4]; 4],
+    color: [u8; 4],
+}
+
+/// The surface of a draw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// a sphere of this level
+    Sphere(u8),
+    /// of the frame's batch of this number
+    Batch(usize),
+}
+
+/// Instances of one surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Draw {
+    /// the surface
+    pub form: Form,
+    /// which of the instances
+    pub range: Range<u32>,
+}
+
+/// The lists.
+#[derive(Default)]
+pub struct Lists {
+    /// bodies, then translucent spheres
+    pub instances: Vec<Instance>,
+    /// bodies by surface
+    pub draws: Vec<Draw>,
+    /// translucent spheres
+    pub bubbles: Range<u32>,
+    /// lines and dots: those behind bodies hidden, then those on top
+    pub strokes: Vec<Stroke>,
+    /// where those on top begin
+    pub on_top: u32,
+    /// walls, then the faces of translucent boxes
+    pub faces: Vec<Face>,
+    /// where those of boxes begin
+    pub boxes: u32,
+    levels: Vec<u8>,
+}
+
+/// What the lists depend on beside the frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Detail {
+    /// height of the picture \[pixels\]
+    pub height: u32,
+    /// how far a sphere may be from round \[pixels\]
+    pub tolerance: f64,
+    /// width of lines \[pixels\]
+    pub line_width: f32,
+}
+
+impl Lists {
+    /// Sorts a frame.
+    pub fn collect(&mut self, frame: &Frame, detail: Detail) {
+        self.instances.clear();
+        self.draws.clear();
+        self.strokes.clear();
+        self.faces.clear();
+        self.spheres(frame, detail);
+        for (i, batch) in frame.batches.iter().enumerate().filter(|(_, b)| !b.instances.is_empty()) {
+            self.push_draw(Form::Batch(i), &batch.instances);
+        }
+        self.bubbles(frame);
+        self.walls(frame, detail);
+        self.boxes = self.faces.len() as u32;
+        frame.overlay.blocks.iter().for_each(|b| self.block(frame, b));
+        self.overlay_lines(frame);
+    }
+
+    fn push_draw(&mut self, form: Form, instances: &[Instance]) {
+        let start = self.instances.len() as u32;
+        self.instances.extend_from_slice(instances);
+        self.draws.push(Draw { form, range: start..self.instances.len() as u32 });
+    }
+
+    /// Spheres by level, each level in the frame's order.
+    fn spheres(&mut self, frame: &Frame, detail: Detail) {
+        let eye = frame.place(frame.camera.eye);
+        let pixels = f64::from(detail.height) / 2.0 / frame.camera.tan_half_fov();
+        let crowd = (frame.spheres.len() as f64 / CROWD as f64).max(1.0).sqrt();
+        let radius_of = |s: &Instance| {
+            let d = [0, 1, 2].map(|k| f64::from(s.position[k] - eye[k]));
+            let distance = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
+            f64::from(s.scale) * pixels / distance.max(f64::from(s.scale))
+        };
+        let level_of = |s: &Instance| match frame.look.quality {
+            Quality::Level(level) => level.min(FINEST),
+            Quality::Auto if frame.look.mode.has_lines() => line_level(radius_of(s)),
+            // Each triangle is seen as one: more of them would only look like Gouraud's.
+            Quality::Auto if frame.look.mode == Mode::Flat => level_for(radius_of(s), detail.tolerance * crowd).min(3),
+            Quality::Auto => level_for(radius_of(s), detail.tolerance * crowd),
+        };
+        self.levels.clear();
+        self.levels.extend(frame.spheres.iter().map(level_of));
+        for level in 0..=FINEST {
+            let start = self.instances.len() as u32;
+            let of_level = frame.spheres.iter().zip(&self.levels).filter(|(_, l)| **l == level);
+            self.instances.extend(of_level.map(|(s, _)| *s));
+            let range = start..self.instances.len() as u32;
+            if !range.is_empty() {
+                self.draws.push(Draw { form: Form::Sphere(level), range });
+            }
+        }
+    }
+
+    fn bubbles(&mut self, frame: &Frame) {
+        let start = self.instances.len() as u32;
+        let bubbles = frame.overlay.bubbles.iter();
+        self.instances.extend(bubbles.filter_map(|b| frame.instance(b.center, b.radius, Quat::IDENTITY, b.color)));
+        self.bubbles = start..self.instances.len() as u32;
+    }
+
+    fn walls(&mut self, frame: &Frame, detail: Detail) {
+        let colors = frame.look.theme.colors();
+        for wall in &frame.walls {
+            let from_eye = wall.corners[0] - frame.camera.eye;
+            let front = from_eye.dot(wall.normal) < 0.0;
+            if wall.endless.is_none() {
+                self.outline(frame, &wall.corners, opaque(colors.wall_edge), detail.line_width * WALL_EDGE, front);
+            }
+            if !(front || wall.two_sided) || frame.look.mode == Mode::Wireframe {
+                continue;
+            }
+            let [r, g, b] = wall.color.unwrap_or(colors.wall);
+            let color = [r, g, b, WALL_OPACITY];
+            // The shader takes the normal from the corners: counter-clockwise seen from the front.
+            let mut corners = wall.corners;
+            if (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(wall.normal) < 0.0 {
+                corners.reverse();
+            }
+            let kind = [f32::from(wall.endless.is_some()), 1.0, (wall.endless.unwrap_or(0.0) / frame.unit) as f32, 0.0];
+            self.face(frame, corners, kind, color);
+        }
+    }
+
+    /// An edge that two walls share is drawn once or twice; behind the scene a little fainter.
+    fn outline(&mut self, frame: &Frame, corners: &[Vec3; 4], color: [u8; 4], width: f32, front: bool) {
+        let [r, g, b, a] = color;
+        let color = [r, g, b, if front { a } else { a / 2 }];
+        for i in 0..4 {
+            let (start, end) = (frame.place(corners[i]), frame.place(corners[(i + 1) % 4]));
+            self.stroke(Stroke { start, width, end, color });
+        }
+    }
+
+    fn block(&mut self, frame: &Frame, block: &Block) {
+        let corners = block.corners();
+        for face in Block::FACES {
+            self.face(frame, face.map(|i| corners[i]), [0.0; 4], block.color);
+        }
+    }
+
+    fn face(&mut self, frame: &Frame, corners: [Vec3; 4], kind: [f32; 4], color: [u8; 4]) {
+        let place = |i: usize| {
+            let [x, y, z] = frame.place(corners[i]);
+            [x, y, z, kind[i]]
+        };
+        let corners = [0, 1, 2, 3].map(place);
+        if corners.iter().flatten().all(|x| x.is_finite()) {
+            self.faces.push(Face { corners, color });
+        }
+    }
+
+    fn overlay_lines(&mut self, frame: &Frame) {
+        for on_top in [false, true] {
+            if on_top {
+                self.on_top = self.strokes.len() as u32;
+            }
+            let lines = frame.overlay.lines.iter().filter(|l| l.on_top == on_top);
+            for Line { from, to, color, width, .. } in lines {
+                self.stroke(Stroke { start: frame.place(*from), width: *width, end: frame.place(*to), color: *color });
+            }
+            let points = frame.overlay.points.iter().filter(|p| p.on_top == on_top);
+            for p in points {
+                let at = frame.place(p.at);
+                self.stroke(Stroke { start: at, width: p.size, end: at, color: p.color });
+            }
+        }
+    }
+
+    fn stroke(&mut self, s: Stroke) {
+        let numbers = s.start.iter().chain(&s.end).chain([&s.width]);
+        if numbers.into_iter().all(|x| x.is_finite()) {
+            self.strokes.push(s);
+        }
+    }
+}
+
+fn line_level(radius: f64) -> u8 {
+    LINE_LEVELS.iter().find(|(r, _)| radius < *r).map_or(3, |(_, level)| *level)
+}
+
+fn opaque([r, g, b]: [u8; 3]) -> [u8; 4] {
+    [r, g, b, 255]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::Camera;
+    use crate::frame::{Look, Wall};
+    use crate::overlay::{Bubble, Point};
+
+    const DETAIL: Detail = Detail { height: 720, tolerance: 0.25, line_width: 1.0 };
+
+    fn frame() -> Frame {
+        let camera = Camera { eye: Vec3::new(0.0, 0.0, 4.0), look_at: Vec3::ZERO, up: Vec3::Y, fov_deg: 45.0 };
+        let mut frame = Frame::new(camera, Look::default());
+        let ball = |z: f64| frame.instance(Vec3::new(0.0, 0.0, z), 0.5, Quat::IDENTITY, [255; 4]);
+        frame.spheres = [-400.0, 3.3, 0.0, -400.0].into_iter().filter_map(ball).collect();
+        frame
+    }
+
+    #[test]
+    fn near_spheres_are_finer_and_none_is_lost() {
+        let mut lists = Lists::default();
+        lists.collect(&frame(), DETAIL);
+        assert_eq!(lists.instances.len(), 4);
+        let levels: Vec<u8> = lists
+            .draws
+            .iter()
+            .filter_map(|d| match d.form {
+                Form::Sphere(level) => Some(level),
+                Form::Batch(_) => None,
+            })
+            .collect();
+        assert!(levels.is_sorted() && levels.len() == 3, "{levels:?}");
+        assert_eq!(lists.draws[0].range, 0..2);
+        let mut fixed = frame();
+        fixed.look.quality = Quality::Level(200);
+        lists.collect(&fixed, DETAIL);
+        assert_eq!(lists.draws, [Draw { form: Form::Sphere(FINEST), range: 0..4 }]);
+    }
+
+    #[test]
+    fn walls_are_drawn_from_their_front_only() {
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|p| Vec3::new(p[0], p[1], -1.0));
+        let wall = Wall { corners, normal: Vec3::Z, two_sided: false, endless: None, color: None };
+        let mut frame = frame();
+        let back = Wall { normal: -Vec3::Z, ..wall };
+        frame.walls = vec![wall, back, Wall { two_sided: true, ..back }];
+        let mut lists = Lists::default();
+        lists.collect(&frame, DETAIL);
+        assert_eq!((lists.faces.len(), lists.strokes.len()), (2, 12));
+    }
+
+    #[test]
+    fn the_overlay_is_sorted_and_what_is_not_finite_left_out() {
+        let mut frame = frame();
+        let line = Line { from: Vec3::ZERO, to: Vec3::X, color: [9; 4], width: 1.0, on_top: true };
+        let nowhere = Vec3::splat(f64::NAN);
+        frame.overlay.lines = vec![line, Line { on_top: false, ..line }, Line { to: nowhere, ..line }];
+        frame.overlay.points.push(Point { at: Vec3::ZERO, color: [9; 4], size: 3.0, on_top: false });
+        let half = Vec3::splat(1.0);
+        frame.overlay.blocks.push(Block { center: nowhere, half, orientation: Quat::IDENTITY, color: [9; 4] });
+        frame.overlay.blocks.push(Block { center: Vec3::X, half, orientation: Quat::IDENTITY, color: [9; 4] });
+        frame.overlay.bubbles.push(Bubble { center: Vec3::X, radius: 1.0, color: [9; 4] });
+        let mut lists = Lists::default();
+        lists.collect(&frame, DETAIL);
+        assert_eq!((lists.strokes.len(), lists.on_top, lists.faces.len(), lists.boxes), (3, 2, 6, 0));
+        assert_eq!(lists.bubbles, 4..5);
+    }
+}

@@ -1,0 +1,344 @@
+//! From a world to a picture: which body is drawn with which surface in which color, and where it is.
+
+use crate::camera::Camera;
+use crate::frame::{Batch, Frame, Light, Look, Wall};
+use crate::mesh::Mesh;
+use crate::palette::{Rgb, default_color, varied};
+use crate::walls;
+use mrtphys::bounds::Aabb;
+use mrtphys::math::Quat;
+use mrtphys::shape::{Polyhedron, Quadrangle, Shape, Sphere};
+use mrtphys::{BodyId, Real, Vec3, World};
+use mrtphys_scene::Loaded;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Where a viewer looks from unless the scene says it: to the front right and from above.
+const FROM: Vec3 = Vec3::new(1.5, 1.0, 2.5);
+/// Strength of the viewer's own light beside the first light of a scene without lights.
+const FILL: f32 = 0.16;
+
+/// The default surface of a body.
+#[derive(Clone, Copy, Debug)]
+struct Actor {
+    id: BodyId,
+    /// number of a surface; `None`: a sphere
+    mesh: Option<u32>,
+    /// largest distance of a drawn point from the body's origin \[m\]
+    reach: Real,
+    color: Rgb,
+}
+
+/// Positions and orientations of the bodies of a stage, in its order: the state that a picture shows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Poses {
+    /// centres of mass \[m\]
+    pub positions: Vec<Vec3>,
+    /// orientations
+    pub orientations: Vec<Quat>,
+}
+
+impl Poses {
+    /// The state between two, `part` of the way from `a` to `b`: positions along the straight line, orientations along the
+    /// shorter way round.
+    pub fn set_between(&mut self, a: &Poses, b: &Poses, part: Real) {
+        self.positions.clear();
+        self.orientations.clear();
+        self.positions.extend(a.positions.iter().zip(&b.positions).map(|(p, q)| *p + (*q - *p) * part));
+        self.orientations.extend(a.orientations.iter().zip(&b.orientations).map(|(p, q)| between(*p, *q, part)));
+    }
+}
+
+/// Normalized linear interpolation: for the small angles between two steps the same as the great circle to third order.
+fn between(a: Quat, b: Quat, part: Real) -> Quat {
+    let sign = if a.dot(b) < 0.0 { -1.0 } else { 1.0 };
+    let mix = |x: Real, y: Real| x * (1.0 - part) + sign * y * part;
+    Quat::new(mix(a.x, b.x), mix(a.y, b.y), mix(a.z, b.z), mix(a.w, b.w)).try_normalize().unwrap_or(b)
+}
+
+/// What the bodies and boundaries of a world look like. Made once for a scene, and again when bodies come or go.
+pub struct Stage {
+    actors: Vec<Actor>,
+    meshes: Vec<Arc<Mesh>>,
+    walls: Vec<Wall>,
+    lights: Vec<Light>,
+    camera: Camera,
+    bounds: Aabb,
+}
+
+impl Stage {
+    /// Looks at a world as it is now.
+    pub fn new(loaded: &Loaded) -> Stage {
+        let mut cast = Casting::default();
+        let world = &loaded.world;
+        let actors: Vec<Actor> = world.bodies().filter_map(|id| cast.actor(loaded, id)).collect();
+        let bounds = bounds_of(loaded, &actors);
+        let camera = loaded.scene.camera.map(Camera::from).unwrap_or_else(|| {
+            let mut camera = Camera { eye: FROM, look_at: Vec3::ZERO, up: Vec3::Y, fov_deg: 35.0 };
+            camera.fit(&bounds, 1.0);
+            camera
+        });
+        let lights = &loaded.scene.lights;
+        let strength = 1.0 / (lights.len().max(1) as f32).sqrt();
+        let light = |l: &mrtphys_scene::scene::Light| Light { direction: l.direction, color: l.color.rgb, strength };
+        let lights = lights.iter().map(light).collect();
+        let walls = walls::walls_of(loaded, &bounds, camera.up.try_normalize().unwrap_or(Vec3::Y));
+        Stage { actors, meshes: cast.meshes, walls, lights, camera, bounds }
+    }
+
+    /// How many bodies there are.
+    pub fn body_count(&self) -> usize {
+        self.actors.len()
+    }
+
+    /// The bodies, in the order of the poses.
+    pub fn bodies(&self) -> impl ExactSizeIterator<Item = BodyId> + '_ {
+        self.actors.iter().map(|a| a.id)
+    }
+
+    /// The scene's camera, else one that shows everything.
+    pub fn camera(&self) -> Camera {
+        self.camera
+    }
+
+    /// A box round the bodies as they were, and the finite boundaries.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// Reads where the bodies are now. One that is gone stays where the poses had it, out of sight.
+    pub fn read(&self, world: &World, poses: &mut Poses) {
+        poses.positions.clear();
+        poses.orientations.clear();
+        for actor in &self.actors {
+            let gone = (Vec3::splat(Real::NAN), Quat::IDENTITY);
+            let (position, orientation) = world.pose(actor.id).unwrap_or(gone);
+            poses.positions.push(position);
+            poses.orientations.push(orientation);
+        }
+    }
+
+    /// Fills a picture. Its overlay is left as it is.
+    pub fn fill(&self, camera: Camera, look: Look, poses: &Poses, frame: &mut Frame) {
+        frame.restart(camera, look);
+        if frame.batches.len() != self.meshes.len()
+            || !frame.batches.iter().zip(&self.meshes).all(|(b, m)| Arc::ptr_eq(&b.mesh, m))
+        {
+            frame.batches = self.meshes.iter().map(|m| Batch { mesh: m.clone(), instances: Vec::new() }).collect();
+        }
+        for ((actor, &position), &q) in self.actors.iter().zip(&poses.positions).zip(&poses.orientations) {
+            let [r, g, b] = actor.color;
+            let Some(instance) = frame.instance(position, actor.reach, q, [r, g, b, 255]) else { continue };
+            match actor.mesh {
+                None => frame.spheres.push(instance),
+                Some(m) => frame.batches[m as usize].instances.push(instance),
+            }
+        }
+        if look.walls {
+            frame.walls.extend_from_slice(&self.walls);
+        }
+        if self.lights.is_empty() {
+            frame.lights.extend(default_lights(&camera));
+        } else {
+            frame.lights.extend_from_slice(&self.lights);
+        }
+    }
+}
+
+/// One light from above, and a weak one from the viewer, so that no side is black.
+fn default_lights(camera: &Camera) -> [Light; 2] {
+    let axes = camera.axes();
+    let own = axes.forward - axes.up * 0.3 - axes.right * 0.5;
+    let key = mrtphys_scene::scene::Light::default();
+    [
+        Light { direction: key.direction, color: [255, 251, 244], strength: 1.0 },
+        Light { direction: own, color: [232, 240, 255], strength: FILL },
+    ]
+}
+
+/// A picture of a world as it is now, from the scene's camera.
+pub fn frame_of(loaded: &Loaded, look: Look) -> Frame {
+    let stage = Stage::new(loaded);
+    let mut poses = Poses::default();
+    stage.read(&loaded.world, &mut poses);
+    let mut frame = Frame::new(stage.camera(), look);
+    stage.fill(stage.camera(), look, &poses, &mut frame);
+    frame
+}
+
+fn bounds_of(loaded: &Loaded, actors: &[Actor]) -> Aabb {
+    let around = |a: &Actor| {
+        let (p, _) = loaded.world.pose(a.id).ok()?;
+        let reach = Vec3::splat(a.reach);
+        p.is_finite().then_some([p - reach, p + reach])
+    };
+    let bodies = actors.iter().filter_map(around).flatten();
+    let bounds = Aabb::of_points(bodies.chain(walls::finite_corners(loaded)));
+    if bounds.min.is_finite() && bounds.max.is_finite() {
+        bounds
+    } else {
+        Aabb { min: Vec3::splat(-1.0), max: Vec3::splat(1.0) }
+    }
+}
+
+/// Finds a surface for each body; similar bodies share one.
+#[derive(Default)]
+struct Casting {
+    meshes: Vec<Arc<Mesh>>,
+    /// surface by the bits of its single-precision corners
+    by_form: BTreeMap<Vec<u32>, u32>,
+    /// the latest shape and what was found for it: bodies of the same shape often follow each other
+    latest: Vec<(Arc<dyn Shape>, Option<u32>, Real)>,
+}
+
+/// How many of the latest shapes are remembered.
+const REMEMBERED: usize = 16;
+
+impl Casting {
+    fn actor(&mut self, loaded: &Loaded, id: BodyId) -> Option<Actor> {
+        let body = loaded.world.body(id).ok()?;
+        let (mesh, reach) = self.surface(&body.shape);
+        let number = id.to_parts().0 as usize;
+        let by_default = || varied(default_color(&body.kind, body.mass == Real::INFINITY), number);
+        let color = loaded.color(id).map_or_else(by_default, |c| c.rgb);
+        Some(Actor { id, mesh, reach, color })
+    }
+
+    fn surface(&mut self, shape: &Arc<dyn Shape>) -> (Option<u32>, Real) {
+        if let Some((_, mesh, reach)) = self.latest.iter().find(|(s, ..)| Arc::ptr_eq(s, shape)) {
+            return (*mesh, *reach);
+        }
+        let (mesh, reach) = self.new_surface(&**shape);
+        if self.latest.len() == REMEMBERED {
+            self.latest.remove(0);
+        }
+        self.latest.push((shape.clone(), mesh, reach));
+        (mesh, reach)
+    }
+
+    /// A shape that is none of the library's is drawn as its bounding sphere.
+    fn new_surface(&mut self, shape: &dyn Shape) -> (Option<u32>, Real) {
+        let farthest = |points: &[Vec3]| points.iter().map(|p| p.length()).fold(0.0, Real::max);
+        if let Some(s) = shape.downcast::<Sphere>() {
+            (None, s.radius())
+        } else if let Some(p) = shape.downcast::<Polyhedron>() {
+            let reach = farthest(p.corners());
+            (Some(self.mesh(Mesh::polyhedron(p, reach))), reach)
+        } else if let Some(q) = shape.downcast::<Quadrangle>() {
+            let reach = farthest(q.corners());
+            (Some(self.mesh(Mesh::quadrangle(q, reach))), reach)
+        } else {
+            let ball = shape.bounding_sphere();
+            (None, ball.center.length() + ball.radius)
+        }
+    }
+
+    fn mesh(&mut self, mesh: Mesh) -> u32 {
+        let corners = mesh.vertices.iter().flat_map(|v| v.position);
+        let form: Vec<u32> = corners.map(f32::to_bits).chain(mesh.triangles.iter().flatten().copied()).collect();
+        *self.by_form.entry(form).or_insert_with(|| {
+            self.meshes.push(Arc::new(mesh));
+            self.meshes.len() as u32 - 1
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mrtphys_scene::{Scene, gallery};
+
+    fn loaded(text: &str) -> Loaded {
+        Scene::from_text("test", text).unwrap().build().unwrap()
+    }
+
+    #[test]
+    fn every_body_of_every_small_gallery_scene_is_in_the_picture() {
+        for (name, text) in gallery().iter().filter(|(name, _)| !name.ends_with("100k")) {
+            let loaded = loaded(text);
+            let frame = frame_of(&loaded, Look::default());
+            assert_eq!(frame.bodies().count(), loaded.world.body_count(), "{name}");
+            assert_eq!(frame.walls.len(), loaded.world.boundaries().len(), "{name}");
+            assert!(frame.batches.len() <= 8, "{name}: similar bodies share a surface");
+            let all = frame.bodies().all(|b| b.scale > 0.0 && b.position.iter().all(|x| x.is_finite()));
+            assert!(all, "{name}");
+        }
+    }
+
+    #[test]
+    fn scaled_bodies_share_a_surface() {
+        let body = |r: f64| {
+            format!(
+                "[[body]]\nposition = [{}, 0, 0]\nshape = {{ kind = \"tetrahedron\", circumradius = {r} }}\n",
+                r * 8.0
+            )
+        };
+        let text: String = [0.5, 1.0, 4.0].map(body).concat();
+        let frame = frame_of(&loaded(&format!("format = 1\n{text}")), Look::default());
+        assert_eq!((frame.batches.len(), frame.batches[0].instances.len()), (1, 3));
+        let scale = |i: usize| frame.batches[0].instances[i].scale;
+        assert_eq!((scale(1) / scale(0), scale(2) / scale(1)), (2.0, 4.0));
+    }
+
+    #[test]
+    fn a_picture_does_not_depend_on_the_unit_of_length() {
+        let scene = |k: f64| {
+            loaded(&format!(
+                "format = 1\n[[body]]\nshape = {{ kind = \"sphere\", radius = {:e} }}\nposition = [{:e}, 0, 0]\n[camera]\neye = [0, 0, {:e}]\nlook_at = [0, 0, 0]\n",
+                0.5 * k,
+                2.0 * k,
+                8.0 * k
+            ))
+        };
+        let small = frame_of(&scene(2f64.powi(-60)), Look::default());
+        let large = frame_of(&scene(2f64.powi(60)), Look::default());
+        assert_eq!(small.spheres, large.spheres);
+        assert_eq!(small.spheres[0].position, [0.25, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn what_is_between_two_states_is_halfway() {
+        let quarter = Quat::from_axis_angle(Vec3::Y, 0.5);
+        let minus = Quat::new(-quarter.x, -quarter.y, -quarter.z, -quarter.w);
+        let a = Poses { positions: vec![Vec3::ZERO], orientations: vec![Quat::IDENTITY] };
+        let mut c = Poses::default();
+        for q in [quarter, minus] {
+            let b = Poses { positions: vec![Vec3::X * 4.0], orientations: vec![q] };
+            c.set_between(&a, &b, 0.5);
+            assert_eq!(c.positions[0], Vec3::X * 2.0);
+            assert!(c.orientations[0].dot(Quat::from_axis_angle(Vec3::Y, 0.25)) > 1.0 - 1e-12);
+            c.set_between(&a, &b, 0.0);
+            assert_eq!(c, a);
+        }
+    }
+
+    #[test]
+    fn filling_again_allocates_no_new_lists() {
+        let loaded = loaded(mrtphys_scene::gallery_scene("thesis/cube-4").unwrap());
+        let stage = Stage::new(&loaded);
+        let mut poses = Poses::default();
+        stage.read(&loaded.world, &mut poses);
+        let mut frame = Frame::new(stage.camera(), Look::default());
+        stage.fill(stage.camera(), Look::default(), &poses, &mut frame);
+        let places = |f: &Frame, p: &Poses| {
+            (f.spheres.as_ptr(), f.batches[0].instances.as_ptr(), f.walls.as_ptr(), p.positions.as_ptr())
+        };
+        let before = places(&frame, &poses);
+        stage.read(&loaded.world, &mut poses);
+        stage.fill(stage.camera(), Look::default(), &poses, &mut frame);
+        assert_eq!(before, places(&frame, &poses));
+    }
+
+    #[test]
+    fn a_body_that_cannot_be_drawn_is_left_out() {
+        let mut poses = Poses::default();
+        let loaded = loaded(mrtphys_scene::gallery_scene("cradle").unwrap());
+        let stage = Stage::new(&loaded);
+        stage.read(&loaded.world, &mut poses);
+        poses.positions[0] = Vec3::splat(Real::NAN);
+        poses.positions[1] = Vec3::splat(1e300);
+        let mut frame = Frame::new(stage.camera(), Look::default());
+        stage.fill(stage.camera(), Look::default(), &poses, &mut frame);
+        assert_eq!(frame.spheres.len(), stage.body_count() - 2);
+    }
+}
