@@ -1,7 +1,7 @@
 //! Boundaries of a world.
 
 use super::World;
-use super::bodies::{check_surface, check_vector};
+use super::checks::{check_surface, check_vector};
 use crate::def::{BoundaryDef, Surface};
 use crate::error::{Error, Result};
 use crate::id::BoundaryId;

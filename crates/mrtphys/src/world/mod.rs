@@ -2,6 +2,7 @@
 
 mod bodies;
 mod boundaries;
+mod checks;
 mod energy;
 mod fields;
 mod ids;
