@@ -6,7 +6,7 @@ use std::fmt::Write;
 /// Head of the table.
 pub fn head() -> String {
     format!(
-        "{:<14} {:>8} {:>6} {:>10} {:>10} {:>8}  {:<46} {:>9} {:>11} {:>6} {:>4}  {}",
+        "{:<14} {:>8} {:>6} {:>10} {:>10} {:>8}  {:<46} {:>9} {:>11} {:>6} {:>6} {:>4}  {}",
         "scene",
         "bodies",
         "steps",
@@ -17,6 +17,7 @@ pub fn head() -> String {
         "E/E0 - 1",
         "collisions/s",
         "/theory",
+        "step/d",
         "out",
         "state hash"
     )
@@ -33,7 +34,7 @@ pub fn line(m: &Measurement) -> String {
         }
     }
     format!(
-        "{:<14} {:>8} {:>6} {:>10.4} {:>10.4} {:>8.1}  {:<46} {:>9.1e} {:>11.4e} {:>6.3} {:>4}  {}",
+        "{:<14} {:>8} {:>6} {:>10.4} {:>10.4} {:>8.1}  {:<46} {:>9.1e} {:>11.4e} {:>6.3} {:>6.2} {:>4}  {}",
         m.scene,
         m.bodies,
         m.steps,
@@ -44,6 +45,7 @@ pub fn line(m: &Measurement) -> String {
         m.energy_error,
         m.collisions_per_second,
         m.collisions_per_second / m.theory,
+        m.largest_step,
         m.escaped,
         m.state_hash
     )
