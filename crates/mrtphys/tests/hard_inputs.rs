@@ -180,3 +180,14 @@ fn bodies_come_and_go_while_the_world_runs() {
     assert_eq!(w.body_count(), ids.len());
     assert!(support::residual(&w, kinetic, high - low) <= 1.0, "{}", support::residual(&w, kinetic, high - low));
 }
+
+/// Row 39: a million points on a sphere are more corners than a rigid body may have; said in seconds, not in hours.
+#[test]
+fn a_million_points_on_a_sphere() {
+    let mut random = support::Random(39);
+    let points: Vec<Vec3> = (0..1_000_000).map(|_| random.direction()).collect();
+    let error = Polyhedron::convex_hull(&points).unwrap_err();
+    assert!(matches!(error, mrtphys::Error::LimitExceeded { .. }), "{error:?}");
+    let hull = Polyhedron::convex_hull(&points[..20_000]).unwrap();
+    assert_eq!(hull.corners().len(), 20_000);
+}

@@ -167,7 +167,7 @@ fn a_body_can_go_while_in_contact() {
 fn many_bodies_come_and_go() {
     let mut w = world();
     let shape: Arc<dyn mrtphys::shape::Shape> = Arc::new(Sphere::new(0.1).unwrap());
-    let ids: Vec<_> = (0..100_000)
+    let ids: Vec<_> = (0..1_000_000)
         .map(|i| {
             w.add_body(BodyDef { position: Vec3::new(f64::from(i), 0.0, 0.0), ..BodyDef::new(shape.clone()) }).unwrap()
         })
