@@ -15,6 +15,8 @@ use std::time::Duration;
 pub struct Work {
     /// acceleration of each body by the force fields at the end of the motion \[m/s2\]; empty where there are none
     pub accelerations: Vec<Vec3>,
+    /// no body has spin, and none has been given any since that was seen
+    pub nothing_spins: bool,
     /// rotation matrix of each body, by slot; empty where every body is a sphere
     pub rotations: Vec<Mat3>,
     /// bounding spheres in place

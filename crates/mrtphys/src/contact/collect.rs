@@ -74,8 +74,8 @@ pub fn collect(model: &Model, state: &State, let_back: &mut LetBack, work: &mut 
         walls.iter().for_each(|&[body, wall]| scene.touch_wall(body, wall, block));
     });
     take(&mut work.blocks[..n]);
-    // Stable: contacts of one pair keep the order in which their routine reported them.
-    contacts.list.sort_by_key(|c| c.key);
+    // Contacts of one pair keep the order in which their routine reported them: that of their points.
+    contacts.list.sort_unstable_by_key(|c| (c.key, c.first_point));
     work.counters.contacts += contacts.list.len() as u64;
 }
 

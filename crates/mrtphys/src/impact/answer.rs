@@ -125,6 +125,7 @@ fn settle_area(
     };
     let centers = [state.lines[contact.a as usize].x, center_b];
     let Some(response) = super::area::settle(found, points, centers) else { return };
+    work.nothing_spins = false;
     let (mut sum, mut moment_arm) = (Vec3::ZERO, Vec3::ZERO);
     for (&point, &impulse) in points.iter().zip(&response.impulses) {
         push(state, &Contact { point, ..*contact }, impulse);
@@ -158,6 +159,7 @@ fn respond(
     encounter: &Encounter,
 ) {
     let Some(response) = super::sequential::respond(encounter, recipe.law) else { return };
+    work.nothing_spins = false;
     push(state, contact, response.impulse_on_a);
     count(work, contact);
     work.counters.fallbacks += u64::from(response.fallback);

@@ -110,6 +110,7 @@ fn reflect_group(
         }
     }
     let before = table.bodies.clone();
+    work.nothing_spins = false;
     let outcome = reflect(Group { bodies: &mut table.bodies, contacts: &entries }, BUDGET);
     work.counters.undecided += u64::from(!outcome.decided);
     if outcome.rounds == 0 {

@@ -17,6 +17,7 @@ use crate::model::Model;
 use crate::par::{for_each_block, for_each_block2};
 use crate::state::{Line, Spin, State};
 use crate::work::Work;
+use rayon::prelude::*;
 
 /// Farthest from the origin that a body may be \[m\]: squares of larger distances leave the range of numbers.
 pub const FARTHEST: Real = 1e150;
@@ -52,7 +53,9 @@ pub fn advance(
     let closed = settings.integrator != Integrator::RungeKutta4 || drag.is_void();
     let uniform = force.zip(flow).filter(|_| closed);
     let no_force = fields.no_force();
-    let spun_out = turn(model, &mut state.spins, &drag, ledger);
+    // Where nothing spins and nothing has been given spin since, there is nothing to look at.
+    let spun_out = if work.nothing_spins { Vec::new() } else { turn(model, &mut state.spins, &drag, ledger) };
+    work.nothing_spins = work.nothing_spins || state.spins.par_iter().all(|spin| spin.l == Vec3::ZERO);
     set_aside(model, state, &spun_out, ledger, counters);
     let Some((accelerations, flow)) = uniform else {
         return varying::translate(model, state, work, &drag, ledger, counters);

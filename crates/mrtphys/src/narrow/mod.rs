@@ -60,6 +60,7 @@ pub struct Touches {
 impl Touches {
     /// Reports a contact. `manifold`: the corners of the contact area; the point itself where it is a point.
     pub fn push(&mut self, normal: Vec3, point: Vec3, depth: Real, feature: u32, manifold: &[Vec3]) {
+        let manifold = if manifold.is_empty() { std::slice::from_ref(&point) } else { manifold };
         let first_point = self.points.len() as u32;
         self.points.extend_from_slice(manifold);
         self.list.push(Touch { normal, point, depth, feature, first_point, point_count: manifold.len() as u32 });

@@ -118,6 +118,7 @@ impl World {
         self.model.epoch += 1;
         self.state.lines.push(line);
         self.state.spins.push(spin);
+        self.work.nothing_spins = false;
         self.next_serial = serial + 1;
         let id = self.ids.push(self.tag);
         self.book_created(self.state.lines.len() - 1);
@@ -363,6 +364,7 @@ impl World {
     ) -> Result<()> {
         let slot = self.ids.slot(id, self.tag)?;
         check_vector("body", field, value)?;
+        self.work.nothing_spins = false;
         self.booking_one(slot, |world| apply(world, slot));
         Ok(())
     }

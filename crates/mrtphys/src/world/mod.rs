@@ -243,6 +243,7 @@ impl World {
         let order = self.model.order();
         let (state, books) = crate::record::snapshot::read(snapshot, &self.model, &self.state, &order)?;
         self.state = state;
+        self.work.nothing_spins = false;
         self.books = books;
         self.model.epoch += 1;
         Ok(())
