@@ -3,7 +3,7 @@
 use crate::choices;
 use crate::exit::{Failure, Outcome, complain};
 use crate::plan::{End, check_seconds};
-use crate::{bench, check, list, output, run};
+use crate::{bench, check, experiment, list, output, run};
 use clap::{Args, Parser, Subcommand};
 use mrtphys::{Algorithm, BroadPhaseKind, FrictionLaw, ImpactMode};
 use std::ffi::OsString;
@@ -35,7 +35,7 @@ enum Command {
         /// A scene file, or the name of a gallery scene
         scene: OsString,
     },
-    /// The thesis's comparison of algorithms and broad phases (not in this version)
+    /// The thesis's comparison of broad phases, redone: tables, figures, report
     Experiment(Later),
     /// The physics measured against theory (not in this version)
     Validate(Later),
@@ -169,10 +169,7 @@ fn dispatch(cli: Cli) -> Outcome {
             "'render'",
             "'mrtphys run SCENE --trajectory FILE.csv' writes every body at every frame",
         )),
-        Some(Command::Experiment(_)) => Err(Failure::not_yet(
-            "'experiment'",
-            "'mrtphys run SCENE --broad-phase NAME --report FILE.json' counts one case",
-        )),
+        Some(Command::Experiment(later)) => experiment::experiment(&later.args, cli.quiet),
         Some(Command::Validate(_)) => {
             Err(Failure::not_yet("'validate'", "'mrtphys run SCENE --report FILE.json' shows where the energy went"))
         }

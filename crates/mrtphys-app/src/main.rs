@@ -22,6 +22,7 @@ mod summary;
 mod check;
 mod list;
 mod bench;
+mod experiment;
 
 fn main() -> std::process::ExitCode {
     cli::main()

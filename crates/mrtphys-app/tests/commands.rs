@@ -20,7 +20,6 @@ fn what_is_not_in_this_version_is_refused_by_name() {
     folder.run("").refused(&["testbed", "not in this version", "mrtphys run SCENE"]);
     folder.run("view gas.toml --fancy").refused(&["'view'", "not in this version", "mrtphys run SCENE"]);
     folder.run("render gas.toml -o a.png").refused(&["'render'", "not in this version", "--trajectory"]);
-    folder.run("experiment -o x").refused(&["'experiment'", "not in this version", "mrtphys run"]);
     folder.run("validate").refused(&["'validate'", "not in this version", "mrtphys run"]);
     folder.run("run gas.toml --algorithm rollback").refused(&["'rollback'", "not in this version", "fixed-step"]);
     folder.run("run gas.toml --algorithm event-driven").refused(&["'event-driven'", "not in this version"]);
