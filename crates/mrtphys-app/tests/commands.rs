@@ -27,6 +27,19 @@ fn what_is_not_in_this_version_is_refused_by_name() {
 }
 
 #[test]
+fn the_experiment_writes_its_folder() {
+    let folder = Folder::new("experiment");
+    let done = folder.run("experiment --quick -o out/deep --quiet").expect(0);
+    assert!(done.out.contains("133888") && done.err.is_empty(), "{}{}", done.out, done.err);
+    for file in ["index.html", "counts.csv", "speed.csv", "clusters.csv", "figure6.svg", "figure9.svg", "clusters.svg"]
+    {
+        assert!(folder.path("out/deep").join(file).is_file(), "{file}");
+    }
+    assert!(folder.run("experiment --help").expect(0).out.contains("--quick"));
+    folder.run("experiment --fast").refused(&["--fast", "--help"]);
+}
+
+#[test]
 fn wrong_options_end_with_1_and_list_the_choices() {
     let folder = Folder::with_scenes("wrong");
     folder.run("run gas.toml --broad-phase sortedgrid").refused(&[

@@ -108,7 +108,7 @@ fn bodies_axis() -> Axis {
         label: "movable bodies m = n³".into(),
         scale: Scale::Log,
         include: vec![],
-        ticks: [2.0f64, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 47.0].map(|n| n.powi(3)).to_vec(),
+        ticks: [2.0f64, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 47.0].map(|n| n.powi(3)).to_vec(),
     }
 }
 

@@ -38,7 +38,7 @@ pub fn full() -> Plan {
     let mut stages: Vec<Stage> = cubes.into_iter().map(|n| cube(n, steps)).collect();
     stages.extend([4, 8, 16, 24, 32].into_iter().map(|n| clusters(n, 32.0, steps)));
     stages.extend([6.0, 8.0, 16.0, 64.0, 128.0].into_iter().map(|edge| clusters(16, edge, steps)));
-    Plan { stages, patience: Patience { time: Duration::from_millis(800), most: 25 } }
+    Plan { stages, patience: Patience { time: Duration::from_millis(1200), most: 25 } }
 }
 
 /// Seconds long: a second of simulated time of small scenes, one of every kind.
@@ -63,7 +63,7 @@ fn cube(n: u32, steps: u32) -> Stage {
         (Method::Spheres, 25..=32) => Which::Windows { steps, windows: 8, each: 1 },
         (Method::Spheres, 33..) => Which::Windows { steps, windows: 3, each: 1 },
         (Method::Tree | Method::Grid, 24..=32) => Which::Windows { steps, windows: 20, each: 4 },
-        (Method::Tree | Method::Grid, 33..) => Which::Windows { steps, windows: 8, each: 3 },
+        (Method::Tree | Method::Grid | Method::Sorted, 33..) => Which::Windows { steps, windows: 8, each: 3 },
         _ => Which::All { steps },
     };
     Stage { arena: Arena::Cube { n }, cases: IN_CUBES.into_iter().map(|m| (m, which(m))).collect() }
@@ -71,7 +71,7 @@ fn cube(n: u32, steps: u32) -> Stage {
 
 fn clusters(n: u32, edge: f64, steps: u32) -> Stage {
     let which = |method| match (method, n) {
-        (Method::Sorted, _) | (_, 0..=8) => Which::All { steps },
+        (_, 0..=8) => Which::All { steps },
         (Method::Spheres, 25..) => Which::Windows { steps, windows: 4, each: 1 },
         (_, 25..) => Which::Windows { steps, windows: 5, each: 2 },
         (Method::Spheres, _) => Which::Windows { steps, windows: 10, each: 1 },

@@ -237,9 +237,9 @@ fn draw(plot: &Plot, left: f64, out: &mut String) {
         let _ = writeln!(
             out,
             "<rect x=\"{a:.1}\" y=\"{TOP}\" width=\"{:.1}\" height=\"{HEIGHT}\" fill=\"#f1f1ec\"/>\
-             <text x=\"{:.1}\" y=\"{}\" font-size=\"10\" fill=\"#777\">{}</text>",
+             <text x=\"{:.1}\" y=\"{}\" text-anchor=\"end\" font-size=\"10\" fill=\"#777\">{}</text>",
             b - a,
-            a + 5.0,
+            b - 5.0,
             TOP + HEIGHT - 8.0,
             escape(name)
         );
