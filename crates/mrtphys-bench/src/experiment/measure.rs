@@ -100,7 +100,7 @@ impl Sums {
             self.tests += c.sphere_tests;
             self.detects += c.detect_calls;
             self.contacts += c.contacts;
-            if world.steps() % u64::from(STEPS_PER_FRAME) == 0 {
+            if world.steps().is_multiple_of(u64::from(STEPS_PER_FRAME)) {
                 let add = [c.sphere_tests, c.detect_calls, 1];
                 self.shown = std::array::from_fn(|i| self.shown[i] + add[i]);
             }

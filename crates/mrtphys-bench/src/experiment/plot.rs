@@ -81,6 +81,7 @@ const BOTTOM: f64 = 62.0;
 const GAP: f64 = 22.0;
 const LEGEND: f64 = 168.0;
 const LINE: f64 = 16.0;
+const SHADE: &str = "#f1f1ec";
 
 /// Plots side by side, one legend for all, lines of text below.
 pub fn figure(plots: &[Plot], notes: &[String]) -> String {
@@ -208,7 +209,7 @@ pub fn grouped(v: i64) -> String {
     let digits = v.unsigned_abs().to_string();
     let mut out = String::from(if v < 0 { "-" } else { "" });
     for (i, c) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i) % 3 == 0 && digits.len() > 4 {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) && digits.len() > 4 {
             out.push('\u{2009}');
         }
         out.push(c);
@@ -232,16 +233,12 @@ fn draw(plot: &Plot, left: f64, out: &mut String) {
     let x = Ruler::new(&plot.x, points().map(|p| p.0), left, left + WIDTH);
     let y = Ruler::new(&plot.y, points().map(|p| p.1), TOP + HEIGHT, TOP);
     let middle = left + 0.5 * WIDTH;
-    if let Some((a, b, name)) = plot.band {
+    if let Some((a, b, _)) = plot.band {
         let (a, b) = (x.place(a).max(left), x.place(b).min(left + WIDTH));
         let _ = writeln!(
             out,
-            "<rect x=\"{a:.1}\" y=\"{TOP}\" width=\"{:.1}\" height=\"{HEIGHT}\" fill=\"#f1f1ec\"/>\
-             <text x=\"{:.1}\" y=\"{}\" text-anchor=\"end\" font-size=\"10\" fill=\"#777\">{}</text>",
-            b - a,
-            b - 5.0,
-            TOP + HEIGHT - 8.0,
-            escape(name)
+            "<rect x=\"{a:.1}\" y=\"{TOP}\" width=\"{:.1}\" height=\"{HEIGHT}\" fill=\"{SHADE}\"/>",
+            (b - a).max(0.0)
         );
     }
     ticks(&x, &y, left, out);
@@ -335,7 +332,7 @@ fn marker(series: &Series, x: f64, y: f64, open: bool, out: &mut String) {
         Marker::Star => {
             let corner = |k: usize| {
                 let (radius, angle) =
-                    (if k % 2 == 0 { 7.5 } else { 3.2 }, std::f64::consts::PI * (k as f64 / 5.0 - 0.5));
+                    (if k.is_multiple_of(2) { 7.5 } else { 3.2 }, std::f64::consts::PI * (k as f64 / 5.0 - 0.5));
                 (radius * angle.cos(), radius * angle.sin())
             };
             polygon(&(0..10).map(corner).collect::<Vec<_>>())
@@ -353,8 +350,21 @@ fn legend(plots: &[Plot], left: f64, out: &mut String) {
             named.push(series);
         }
     }
+    let row = |i: usize| TOP + 12.0 + 22.0 * i as f64;
+    if let Some((_, _, name)) = plots.iter().find_map(|p| p.band) {
+        let y = row(named.len());
+        let _ = writeln!(
+            out,
+            "<rect x=\"{left}\" y=\"{}\" width=\"30\" height=\"14\" fill=\"{SHADE}\" stroke=\"#ccc\"/>\
+             <text x=\"{}\" y=\"{}\">{}</text>",
+            y - 7.0,
+            left + 38.0,
+            y + 4.0,
+            escape(name)
+        );
+    }
     for (i, series) in named.into_iter().enumerate() {
-        let y = TOP + 12.0 + 22.0 * i as f64;
+        let y = row(i);
         if series.line {
             let _ = writeln!(out, "<path d=\"M{left} {y}h30\" stroke=\"{}\" stroke-width=\"1.6\"/>", series.color);
         }
