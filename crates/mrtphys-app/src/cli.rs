@@ -6,7 +6,7 @@ use crate::choices;
 use crate::exit::{Failure, Outcome, complain};
 use crate::plan::{End, check_seconds};
 use crate::render_args::RenderArgs;
-use crate::{bench, check, list, output, render, run};
+use crate::{bench, check, experiment, list, output, render, run};
 use clap::{Args, Parser, Subcommand};
 use mrtphys::{Algorithm, BroadPhaseKind, FrictionLaw, ImpactMode};
 use std::ffi::OsString;
@@ -39,7 +39,7 @@ enum Command {
         /// A scene file, or the name of a gallery scene
         scene: OsString,
     },
-    /// The thesis's comparison of algorithms and broad phases (not in this version)
+    /// The thesis's comparison of broad phases, redone: tables, figures, report
     Experiment(Later),
     /// The physics measured against theory (not in this version)
     Validate(Later),
@@ -199,10 +199,7 @@ fn dispatch(cli: Cli) -> Outcome {
         None => Err(Failure::not_yet("the interactive testbed", instead)),
         Some(Command::View(_)) => Err(Failure::not_yet("'view'", instead)),
         Some(Command::Render(args)) => render::render(&args, cli.quiet),
-        Some(Command::Experiment(_)) => Err(Failure::not_yet(
-            "'experiment'",
-            "'mrtphys run SCENE --broad-phase NAME --report FILE.json' counts one case",
-        )),
+        Some(Command::Experiment(later)) => experiment::experiment(&later.args, cli.quiet),
         Some(Command::Validate(_)) => {
             Err(Failure::not_yet("'validate'", "'mrtphys run SCENE --report FILE.json' shows where the energy went"))
         }

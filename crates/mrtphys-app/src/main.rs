@@ -29,6 +29,7 @@ mod render;
 mod check;
 mod list;
 mod bench;
+mod experiment;
 
 fn main() -> std::process::ExitCode {
     cli::main()

@@ -1,4 +1,6 @@
 //! Options of `render`.
+// The texts are those of `--help`, where [s] is a unit.
+#![allow(rustdoc::broken_intra_doc_links)]
 
 use crate::choices::closest;
 use crate::cli::{SimulationArgs, seconds};

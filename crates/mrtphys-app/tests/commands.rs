@@ -19,11 +19,23 @@ fn what_is_not_in_this_version_is_refused_by_name() {
     let folder = Folder::with_scenes("later");
     folder.run("").refused(&["testbed", "not in this version", "mrtphys run SCENE"]);
     folder.run("view gas.toml --fancy").refused(&["'view'", "not in this version", "mrtphys run SCENE"]);
-    folder.run("experiment -o x").refused(&["'experiment'", "not in this version", "mrtphys run"]);
     folder.run("validate").refused(&["'validate'", "not in this version", "mrtphys run"]);
     folder.run("run gas.toml --algorithm rollback").refused(&["'rollback'", "not in this version", "fixed-step"]);
     folder.run("run gas.toml --algorithm event-driven").refused(&["'event-driven'", "not in this version"]);
     folder.run("run gas.toml --broad-phase bvh").refused(&["'bvh'", "not in this version", "sorted-grid"]);
+}
+
+#[test]
+fn the_experiment_writes_its_folder() {
+    let folder = Folder::new("experiment");
+    let done = folder.run("experiment --quick -o out/deep --quiet").expect(0);
+    assert!(done.out.contains("133888") && done.err.is_empty(), "{}{}", done.out, done.err);
+    for file in ["index.html", "counts.csv", "speed.csv", "clusters.csv", "figure6.svg", "figure9.svg", "clusters.svg"]
+    {
+        assert!(folder.path("out/deep").join(file).is_file(), "{file}");
+    }
+    assert!(folder.run("experiment --help").expect(0).out.contains("--quick"));
+    folder.run("experiment --fast").refused(&["--fast", "--help"]);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 //! collision rate against kinetic theory, and its state hash.
 
 pub mod command;
+pub mod experiment;
 pub mod gas;
 pub mod measure;
 pub mod table;

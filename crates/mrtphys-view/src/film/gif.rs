@@ -31,7 +31,7 @@ impl<W: Write> Gif<W> {
     /// is as long as it should be.
     ///
     /// # Errors
-    /// More than [`FASTEST`] pictures a second, a size above 65535, or the beginning cannot be written.
+    /// More than 50 pictures a second, a size above 65535, or the beginning cannot be written.
     pub fn new(to: W, width: u32, height: u32, fps: f64) -> Result<Gif<W>, ViewError> {
         if !(fps > 0.0 && fps <= FASTEST) {
             return Err(ViewError::Film(format!("a GIF shows at most {FASTEST} pictures a second, not {fps}")));
