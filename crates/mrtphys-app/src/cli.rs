@@ -6,7 +6,7 @@ use crate::choices;
 use crate::exit::{Failure, Outcome, complain};
 use crate::plan::{End, check_seconds};
 use crate::render_args::RenderArgs;
-use crate::{bench, check, experiment, list, output, render, run};
+use crate::{bench, check, experiment, list, output, render, run, setup, testbed};
 use clap::{Args, Parser, Subcommand};
 use mrtphys::{Algorithm, BroadPhaseKind, FrictionLaw, ImpactMode};
 use std::ffi::OsString;
@@ -26,8 +26,9 @@ struct Cli {
 
 #[derive(Subcommand, Debug)]
 enum Command {
-    /// The testbed on one scene (not in this version)
-    View(Later),
+    /// The testbed on one scene
+    #[command(allow_negative_numbers = true)]
+    View(Box<ViewArgs>),
     /// Simulate without a window: progress on stderr, summary on stdout
     #[command(allow_negative_numbers = true)]
     Run(Box<RunArgs>),
@@ -93,6 +94,18 @@ pub struct RunArgs {
     /// Write the world at the end
     #[arg(long, value_name = "FILE")]
     pub snapshot: Option<PathBuf>,
+}
+
+/// Options of `view`.
+#[derive(Args, Debug)]
+pub struct ViewArgs {
+    /// A scene file, or the name of a gallery scene; without it, the gallery
+    pub scene: Option<OsString>,
+    #[command(flatten)]
+    pub simulation: SimulationArgs,
+    /// Frames per second of simulated time
+    #[arg(long, value_name = "N", value_parser = rate)]
+    pub fps: Option<u32>,
 }
 
 /// How a scene is simulated: options of every command that does.
@@ -194,10 +207,9 @@ pub fn main() -> ExitCode {
 }
 
 fn dispatch(cli: Cli) -> Outcome {
-    let instead = "use 'mrtphys run SCENE' to simulate without a window, 'mrtphys scenes' for the gallery";
     match cli.command {
-        None => Err(Failure::not_yet("the interactive testbed", instead)),
-        Some(Command::View(_)) => Err(Failure::not_yet("'view'", instead)),
+        None => testbed::open(None),
+        Some(Command::View(args)) => view(&args),
         Some(Command::Render(args)) => render::render(&args, cli.quiet),
         Some(Command::Experiment(later)) => experiment::experiment(&later.args, cli.quiet),
         Some(Command::Validate(_)) => {
@@ -209,6 +221,13 @@ fn dispatch(cli: Cli) -> Outcome {
         Some(Command::Scenes) => list::scenes(),
         Some(Command::Schema) => list::schema(),
     }
+}
+
+fn view(args: &ViewArgs) -> Outcome {
+    let Some(name) = &args.scene else { return testbed::open(None) };
+    let mut scene = setup::load(name)?;
+    setup::apply(&args.simulation, args.fps, &mut scene);
+    testbed::open(Some(scene))
 }
 
 #[cfg(test)]

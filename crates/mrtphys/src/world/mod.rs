@@ -57,6 +57,30 @@ pub(crate) struct Books {
     pub largest_step: Real,
 }
 
+/// A copy that lives on by itself, bit for bit as the original would; handles of the original are handles of the copy too.
+/// Scratch memory is not copied, nor are events that nobody has fetched. Nor is a broad phase of the user's: the copy has the
+/// one that the settings say until [`set_broad_phase`] is called.
+///
+/// [`set_broad_phase`]: World::set_broad_phase
+impl Clone for World {
+    fn clone(&self) -> World {
+        World {
+            tag: self.tag,
+            kinds: self.kinds.clone(),
+            model: self.model.clone(),
+            state: self.state.clone(),
+            work: Work { broad: Some(broad::make(self.model.settings.broad_phase)), ..Work::default() },
+            ids: self.ids.clone(),
+            next_serial: self.next_serial,
+            scopes_epoch: self.scopes_epoch,
+            law: self.law.clone(),
+            books: self.books.clone(),
+            recording: self.recording,
+            events: VecDeque::new(),
+        }
+    }
+}
+
 impl World {
     /// An empty world with the standard kinds.
     ///
