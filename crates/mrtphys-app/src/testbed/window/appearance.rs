@@ -11,6 +11,8 @@ pub fn apply(context: &egui::Context, preferences: &Preferences) {
     context.all_styles_mut(|style| {
         style.spacing.item_spacing = egui::vec2(6.0, 4.0);
         style.spacing.slider_rail_height = 5.0;
+        // A bar beside what it scrolls, not over it.
+        style.spacing.scroll = egui::style::ScrollStyle { bar_width: 8.0, ..egui::style::ScrollStyle::solid() };
         style.interaction.selectable_labels = false;
         style.interaction.tooltip_delay = 0.4;
     });

@@ -55,7 +55,7 @@ impl Transport {
                 let hint = "Seconds of animation time for a second of real time (panel: Animation)";
                 fixed(ui, 66.0, &speed).on_hover_text(hint);
                 let hint = "Time code: hours h: minutes ': seconds \": frames f of animation time";
-                let code_shown = fixed(ui, 136.0, &code).on_hover_text(hint);
+                let code_shown = fixed(ui, 168.0, &code).on_hover_text(hint);
                 desk.probes.mark("transport.code", &code_shown);
                 desk.probes.say(|| "transport.code".into(), &code);
                 let now = Instant::now();
