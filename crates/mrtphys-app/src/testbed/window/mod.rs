@@ -1,7 +1,14 @@
 //! The window round a session.
 
+mod action;
 mod app;
 mod desk;
+mod format;
+mod panel;
+#[allow(dead_code)]
+mod pending;
+mod probe;
+mod table;
 mod viewport;
 
 use crate::exit::{Failure, Outcome};
