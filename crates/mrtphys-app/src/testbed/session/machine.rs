@@ -251,7 +251,16 @@ impl Still {
         let Machine { loaded, frame, tick, done, plan, hand, own, rest } = machine;
         let rest = rest.get_or_insert_with(|| Arc::new((loaded.names.clone(), loaded.scene.clone()))).clone();
         let world = loaded.world.clone();
-        Still { world, rest, frame: *frame, tick: *tick, done: *done, plan: *plan, hand: hand.clone(), own: own.clone() }
+        Still {
+            world,
+            rest,
+            frame: *frame,
+            tick: *tick,
+            done: *done,
+            plan: *plan,
+            hand: hand.clone(),
+            own: own.clone(),
+        }
     }
 
     /// A machine that goes on from here.

@@ -18,6 +18,8 @@ mod tape;
 mod core;
 mod restore;
 mod worker;
+#[cfg(test)]
+mod tests;
 
 pub use command::{Command, Grip, Studio, Wish};
 pub use pace::RealTime;
