@@ -265,7 +265,7 @@ impl Still {
 
     /// A machine that goes on from here.
     pub fn awake(&self) -> Machine {
-        let (names, scene) = (&*self.rest).clone();
+        let (names, scene) = (*self.rest).clone();
         Machine {
             loaded: Loaded { world: self.world.clone(), names, scene },
             frame: self.frame,
