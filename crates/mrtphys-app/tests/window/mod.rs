@@ -4,6 +4,7 @@ use super::common::Folder;
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, Command, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Patience with a slow machine.
@@ -40,11 +41,16 @@ pub struct Window<'a> {
     _server: Ended,
     display: String,
     folder: &'a Folder,
+    _only: MutexGuard<'static, ()>,
 }
+
+/// One window at a time: two of them drawn in software leave nothing of a small machine.
+static ONLY: Mutex<()> = Mutex::new(());
 
 impl<'a> Window<'a> {
     /// Opens `mrtphys view` with these arguments, separated by blanks, and waits until it is drawn.
     pub fn open(folder: &'a Folder, args: &str) -> Window<'a> {
+        let only = ONLY.lock().unwrap_or_else(PoisonError::into_inner);
         let mut server = Command::new("Xvfb")
             .args(["-displayfd", "1", "-screen", "0", "1280x800x24", "-nolisten", "tcp"])
             .stdout(Stdio::piped())
@@ -67,11 +73,20 @@ impl<'a> Window<'a> {
             .stderr(std::fs::File::create(folder.path("stderr.txt")).unwrap())
             .spawn()
             .unwrap();
-        let mut window = Window { program: Ended(program), _server: server, display, folder };
+        let mut window = Window { program: Ended(program), _server: server, display, folder, _only: only };
         window.until("the first picture", |s| s["widgets"]["animation.go"].is_array());
         // There is no window manager that would give the keyboard to anybody.
-        window.xdotool(&["search", "--sync", "--name", "mrtphys", "windowfocus"]);
+        window.focus();
         window
+    }
+
+    /// The window may be drawn before it is on the screen.
+    fn focus(&self) {
+        let start = Instant::now();
+        while let Err(why) = self.try_xdotool(&["search", "--onlyvisible", "--name", "mrtphys", "windowfocus"]) {
+            assert!(start.elapsed() < PATIENCE, "{why}");
+            std::thread::sleep(Duration::from_millis(100));
+        }
     }
 
     /// What the panel says now.
@@ -105,8 +120,13 @@ impl<'a> Window<'a> {
 
     /// Mouse and keyboard.
     pub fn xdotool(&self, args: &[&str]) {
+        self.try_xdotool(args).unwrap();
+    }
+
+    fn try_xdotool(&self, args: &[&str]) -> Result<(), String> {
         let done = Command::new("xdotool").args(args).env("DISPLAY", &self.display).output().unwrap();
-        assert!(done.status.success(), "xdotool {args:?}: {}", String::from_utf8_lossy(&done.stderr));
+        let said = || format!("xdotool {args:?}: {}", String::from_utf8_lossy(&done.stderr));
+        if done.status.success() { Ok(()) } else { Err(said()) }
     }
 
     /// Presses keys, one after the other.
@@ -116,7 +136,17 @@ impl<'a> Window<'a> {
 
     /// Types a text.
     pub fn type_text(&self, text: &str) {
-        self.xdotool(&["type", "--delay", "15", text]);
+        self.xdotool(&["type", "--delay", "30", text]);
+    }
+
+    /// Answers the dialog that asks for a file with a name in the folder of the scene.
+    #[track_caller]
+    pub fn name_file(&mut self, name: &str) {
+        self.click("files.name");
+        self.keys(&["ctrl+a"]);
+        self.type_text(name);
+        self.until("the name", |s| s["says"]["files.name"] == name);
+        self.keys(&["Return"]);
     }
 
     fn move_to(&self, x: f64, y: f64) {
@@ -153,7 +183,7 @@ impl<'a> Window<'a> {
         let (x, y) = self.place(control, part);
         self.move_to(x, y);
         self.xdotool(&["mousedown", "1"]);
-        std::thread::sleep(Duration::from_millis(80));
+        std::thread::sleep(Duration::from_millis(200));
         self.xdotool(&["mouseup", "1"]);
     }
 

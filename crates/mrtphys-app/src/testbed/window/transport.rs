@@ -81,7 +81,7 @@ fn fixed(ui: &mut egui::Ui, width: f32, text: &str) -> egui::Response {
 /// A slider over the frames of the recording that fills the line.
 fn scrub(ui: &mut egui::Ui, at: &mut u64, first: u64, last: u64) -> egui::Response {
     ui.spacing_mut().slider_width = (ui.available_width() - 8.0).max(40.0);
-    let slider = egui::Slider::new(at, first..=last.max(first)).show_value(false).trailing_fill(true);
+    let slider = egui::Slider::new(at, first..=last.max(first + 1)).show_value(false).trailing_fill(true);
     ui.add_enabled(last > first, slider)
 }
 
