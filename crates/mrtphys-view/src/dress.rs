@@ -1,8 +1,9 @@
 //! What bodies wear at run time: colors that show a quantity, and an outline.
 
 use crate::palette::{FIXED, Rgb, Theme, default_color};
+use crate::poses::Poses;
 use crate::scale::round_up;
-use crate::stage::{Poses, Stage};
+use crate::stage::Stage;
 use mrtphys::{Real, Vec3};
 
 /// What the colors of bodies show.
