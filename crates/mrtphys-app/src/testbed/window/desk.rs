@@ -40,7 +40,7 @@ impl Desk {
     /// # Errors
     /// The scene's world cannot be made.
     pub fn new(scene: Scene, context: &egui::Context) -> Result<Desk, Diagnostics> {
-        let name = scene.source.name.clone();
+        let name = scene.source.name.to_string();
         let session = start(scene, context)?;
         let camera = session.report().sides[0].shot.stage.camera();
         let look = Look::default();
@@ -52,7 +52,7 @@ impl Desk {
     /// # Errors
     /// The scene's world cannot be made; the old one goes on.
     pub fn open(&mut self, scene: Scene, path: Option<PathBuf>, context: &egui::Context) -> Result<(), Diagnostics> {
-        let name = scene.source.name.clone();
+        let name = scene.source.name.to_string();
         self.session = start(scene, context)?;
         self.camera = self.session.report().sides[0].shot.stage.camera();
         (self.name, self.path, self.selected) = (name, path, None);
