@@ -24,7 +24,11 @@ pub mod palette;
 pub mod mesh;
 pub mod overlay;
 pub mod frame;
+pub mod scale;
+pub mod explain;
 mod walls;
+mod dress;
+mod pick;
 mod stage;
 
 // How it is drawn.
@@ -41,15 +45,18 @@ pub mod image;
 pub mod film;
 mod error;
 
-pub use camera::Camera;
+pub use camera::{Camera, Ray};
 pub use canvas::Canvas;
+pub use dress::{Coloring, Dress, Legend};
 pub use error::ViewError;
+pub use explain::{Drawn, Pen};
 pub use film::Film;
-
-pub use frame::{Frame, Light, Look, Mode, Quality};
+pub use frame::{Frame, Illumination, Light, Look, Mode, Quality};
 pub use gpu::Gpu;
 pub use image::Image;
 pub use overlay::Overlay;
 pub use palette::Theme;
+pub use pick::Hit;
 pub use renderer::Renderer;
+pub use scale::Scale;
 pub use stage::{Poses, Stage, frame_of};

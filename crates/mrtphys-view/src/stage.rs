@@ -1,12 +1,16 @@
 //! From a world to a picture: which body is drawn with which surface in which color, and where it is.
 
-use crate::camera::Camera;
-use crate::frame::{Batch, Frame, Light, Look, Wall};
+use crate::camera::{Camera, Ray};
+use crate::dress::{Dress, Legend, Paint};
+use crate::frame::{Batch, Frame, Highlighted, Instance, Light, Look, Wall};
 use crate::mesh::Mesh;
 use crate::palette::{Rgb, default_color, varied};
+use crate::pick::{self, Hit};
 use crate::walls;
-use mrtphys::bounds::Aabb;
+use mrtphys::bounds::{Aabb, Ball};
+use mrtphys::contact::Other;
 use mrtphys::math::Quat;
+use mrtphys::model::Inertia;
 use mrtphys::shape::{Polyhedron, Quadrangle, Shape, Sphere};
 use mrtphys::{BodyId, Real, Vec3, World};
 use mrtphys_scene::Loaded;
@@ -18,8 +22,8 @@ const FROM: Vec3 = Vec3::new(1.5, 1.0, 2.5);
 /// Strength of the viewer's own light beside the first light of a scene without lights.
 const FILL: f32 = 0.16;
 
-/// The default surface of a body.
-#[derive(Clone, Copy, Debug)]
+/// A body as it is drawn.
+#[derive(Clone, Debug)]
 struct Actor {
     id: BodyId,
     /// number of a surface; `None`: a sphere
@@ -27,6 +31,14 @@ struct Actor {
     /// largest distance of a drawn point from the body's origin \[m\]
     reach: Real,
     color: Rgb,
+    shape: Arc<dyn Shape>,
+    /// smallest enclosing sphere, in the body's own coordinates
+    ball: Ball,
+    /// number of the name of its kind
+    kind: u32,
+    /// mass \[kg\]
+    mass: Real,
+    inertia: Inertia,
 }
 
 /// Positions and orientations of the bodies of a stage, in its order: the state that a picture shows.
@@ -59,6 +71,9 @@ fn between(a: Quat, b: Quat, part: Real) -> Quat {
 /// What the bodies and boundaries of a world look like. Made once for a scene, and again when bodies come or go.
 pub struct Stage {
     actors: Vec<Actor>,
+    /// number of the actor by the first part of the body's handle; beyond the actors: none
+    numbers: Vec<u32>,
+    kinds: Vec<String>,
     meshes: Vec<Arc<Mesh>>,
     walls: Vec<Wall>,
     lights: Vec<Light>,
@@ -83,7 +98,8 @@ impl Stage {
         let light = |l: &mrtphys_scene::scene::Light| Light { direction: l.direction, color: l.color.rgb, strength };
         let lights = lights.iter().map(light).collect();
         let walls = walls::walls_of(loaded, &bounds, camera.up.try_normalize().unwrap_or(Vec3::Y));
-        Stage { actors, meshes: cast.meshes, walls, lights, camera, bounds }
+        let numbers = numbers_of(&actors);
+        Stage { actors, numbers, kinds: cast.kinds, meshes: cast.meshes, walls, lights, camera, bounds }
     }
 
     /// How many bodies there are.
@@ -94,6 +110,99 @@ impl Stage {
     /// The bodies, in the order of the poses.
     pub fn bodies(&self) -> impl ExactSizeIterator<Item = BodyId> + '_ {
         self.actors.iter().map(|a| a.id)
+    }
+
+    /// The number of a body in the stage and its poses; `None`: it is not of this stage.
+    pub fn index(&self, id: BodyId) -> Option<usize> {
+        let number = *self.numbers.get(id.to_parts().0 as usize)? as usize;
+        (self.actors.get(number)?.id == id).then_some(number)
+    }
+
+    /// The body of a number.
+    pub fn body(&self, index: usize) -> Option<BodyId> {
+        self.actors.get(index).map(|a| a.id)
+    }
+
+    /// The body's own color. Panics if there is no body of this number, as do the following.
+    pub fn color(&self, index: usize) -> Rgb {
+        self.actors[index].color
+    }
+
+    /// The name of the kind of the body's shape.
+    pub fn kind(&self, index: usize) -> &str {
+        &self.kinds[self.actors[index].kind as usize]
+    }
+
+    /// Whether the body never moves: its mass is infinite.
+    pub fn is_fixed(&self, index: usize) -> bool {
+        self.actors[index].mass == Real::INFINITY
+    }
+
+    /// Largest distance of a drawn point from the body's origin \[m\].
+    pub fn reach(&self, index: usize) -> Real {
+        self.actors[index].reach
+    }
+
+    /// Smallest enclosing sphere of the body, in its own coordinates.
+    pub fn bounding_sphere(&self, index: usize) -> Ball {
+        self.actors[index].ball
+    }
+
+    /// Whether the body is drawn as a sphere about its origin.
+    pub fn is_sphere(&self, index: usize) -> bool {
+        self.actors[index].mesh.is_none()
+    }
+
+    /// Kinetic energy \[J\] of the body with this orientation and these velocities, with the mass that it had when the stage
+    /// was made; zero for one that never moves.
+    pub fn kinetic_energy(&self, index: usize, orientation: Quat, velocity: Vec3, angular_velocity: Vec3) -> Real {
+        let Actor { mass, inertia, .. } = &self.actors[index];
+        if *mass == Real::INFINITY {
+            return 0.0;
+        }
+        let momentum = inertia.angular_momentum(orientation, angular_velocity);
+        0.5 * (mass * velocity.length_squared() + momentum.dot(angular_velocity))
+    }
+
+    /// The kinds of shape that there are.
+    pub fn kinds(&self) -> &[String] {
+        &self.kinds
+    }
+
+    /// The front-most body that a ray meets, exactly: a sphere, or the triangles of a polyhedron, entered from outside; a plate
+    /// from either side. As in the picture of [`Camera::ray`]'s camera, whatever its [`Look`].
+    pub fn pick(&self, poses: &Poses, ray: Ray) -> Option<Hit> {
+        let mut best: Option<Hit> = None;
+        let mut most = Real::INFINITY;
+        let placed = self.actors.iter().zip(&poses.positions).zip(&poses.orientations);
+        for (index, ((actor, &position), &q)) in placed.enumerate() {
+            if !pick::comes_near(&ray, position, actor.reach, most) {
+                continue;
+            }
+            let found = pick::enters(&ray, &*actor.shape, actor.reach, position, q);
+            if let Some(distance) = found.filter(|d| *d < most) {
+                most = distance;
+                best = Some(Hit { body: actor.id, index, point: ray.at(distance), distance });
+            }
+        }
+        best
+    }
+
+    /// Counts the contacts of every body in the world's last step, in the order of the stage.
+    pub fn count_contacts(&self, world: &World, counts: &mut Vec<u32>) {
+        counts.clear();
+        counts.resize(self.actors.len(), 0);
+        let mut count = |slot: u32| {
+            if let Some(i) = world.body_in_slot(slot).and_then(|id| self.index(id)) {
+                counts[i] += 1;
+            }
+        };
+        for contact in &world.contacts().list {
+            count(contact.a);
+            if let Other::Body(b) = contact.b {
+                count(b);
+            }
+        }
     }
 
     /// The scene's camera, else one that shows everything.
@@ -118,22 +227,53 @@ impl Stage {
         }
     }
 
-    /// Fills a picture. Its overlay is left as it is.
+    /// Fills a picture of the bodies as the scene colors them. Its overlay is left as it is.
     pub fn fill(&self, camera: Camera, look: Look, poses: &Poses, frame: &mut Frame) {
+        self.fill_dressed(camera, look, &Dress::default(), poses, frame);
+    }
+
+    /// Fills a picture of the bodies in this dress. Its overlay is left as it is. Returns what the colors mean; `None`: they are
+    /// the bodies' own, because that was asked for or what the coloring needs is missing or not of as many bodies.
+    pub fn fill_dressed(
+        &self,
+        camera: Camera,
+        look: Look,
+        dress: &Dress<'_>,
+        poses: &Poses,
+        frame: &mut Frame,
+    ) -> Option<Legend> {
         frame.restart(camera, look);
         if frame.batches.len() != self.meshes.len()
             || !frame.batches.iter().zip(&self.meshes).all(|(b, m)| Arc::ptr_eq(&b.mesh, m))
         {
             frame.batches = self.meshes.iter().map(|m| Batch { mesh: m.clone(), instances: Vec::new() }).collect();
         }
-        for ((actor, &position), &q) in self.actors.iter().zip(&poses.positions).zip(&poses.orientations) {
-            let [r, g, b] = actor.color;
+        let paint = Paint::new(self, dress, look.theme, poses);
+        let placed = self.actors.iter().zip(&poses.positions).zip(&poses.orientations);
+        for (i, ((actor, &position), &q)) in placed.enumerate() {
+            let [r, g, b] = paint.color(i);
             let Some(instance) = frame.instance(position, actor.reach, q, [r, g, b, 255]) else { continue };
             match actor.mesh {
-                None => frame.spheres.push(instance),
+                None => frame.spheres.push(Instance { marks: look.marks.into(), ..instance }),
                 Some(m) => frame.batches[m as usize].instances.push(instance),
             }
         }
+        self.outline(dress, poses, frame);
+        self.surroundings(camera, look, frame);
+        paint.legend()
+    }
+
+    fn outline(&self, dress: &Dress<'_>, poses: &Poses, frame: &mut Frame) {
+        for &i in dress.highlight {
+            let Some(actor) = self.actors.get(i) else { continue };
+            let (Some(&position), Some(&q)) = (poses.positions.get(i), poses.orientations.get(i)) else { continue };
+            if let Some(body) = frame.instance(position, actor.reach, q, [255; 4]) {
+                frame.highlight.push(Highlighted { batch: actor.mesh.map(|m| m as usize), body });
+            }
+        }
+    }
+
+    fn surroundings(&self, camera: Camera, look: Look, frame: &mut Frame) {
         if look.walls {
             frame.walls.extend_from_slice(&self.walls);
         }
@@ -166,6 +306,13 @@ pub fn frame_of(loaded: &Loaded, look: Look) -> Frame {
     frame
 }
 
+fn numbers_of(actors: &[Actor]) -> Vec<u32> {
+    let place = |a: &Actor| a.id.to_parts().0 as usize;
+    let mut numbers = vec![u32::MAX; actors.iter().map(|a| place(a) + 1).max().unwrap_or(0)];
+    actors.iter().enumerate().for_each(|(i, a)| numbers[place(a)] = i as u32);
+    numbers
+}
+
 fn bounds_of(loaded: &Loaded, actors: &[Actor]) -> Aabb {
     let around = |a: &Actor| {
         let (p, _) = loaded.world.pose(a.id).ok()?;
@@ -184,6 +331,7 @@ fn bounds_of(loaded: &Loaded, actors: &[Actor]) -> Aabb {
 /// Finds a surface for each body; similar bodies share one.
 #[derive(Default)]
 struct Casting {
+    kinds: Vec<String>,
     meshes: Vec<Arc<Mesh>>,
     /// surface by the bits of its single-precision corners
     by_form: BTreeMap<Vec<u32>, u32>,
@@ -201,7 +349,17 @@ impl Casting {
         let number = id.to_parts().0 as usize;
         let by_default = || varied(default_color(&body.kind, body.mass == Real::INFINITY), number);
         let color = loaded.color(id).map_or_else(by_default, |c| c.rgb);
-        Some(Actor { id, mesh, reach, color })
+        let kind = self.kind(&body.kind);
+        let ball = body.shape.bounding_sphere();
+        Some(Actor { id, mesh, reach, color, shape: body.shape, ball, kind, mass: body.mass, inertia: body.inertia })
+    }
+
+    fn kind(&mut self, name: &str) -> u32 {
+        let found = self.kinds.iter().position(|k| k == name);
+        found.unwrap_or_else(|| {
+            self.kinds.push(name.to_string());
+            self.kinds.len() - 1
+        }) as u32
     }
 
     fn surface(&mut self, shape: &Arc<dyn Shape>) -> (Option<u32>, Real) {

@@ -2,6 +2,7 @@
 
 use crate::frame::Wall;
 use crate::palette::Rgb;
+use crate::scale::round_down;
 use mrtphys::bounds::Aabb;
 use mrtphys::shape::{HalfSpace, LimitPlane, LimitQuadrangle, Shape};
 use mrtphys::{Real, Vec3};
@@ -66,28 +67,12 @@ fn patch(point: Vec3, normal: Vec3, two_sided: bool, bounds: &Aabb, up: Vec3) ->
     let u = u.try_normalize().unwrap_or(Vec3::X) * half;
     let v = normal.cross(u);
     let corners = [foot - u - v, foot + u - v, foot + u + v, foot - u + v];
-    Wall { corners, normal, two_sided, endless: Some(round_number(radius / 3.0)), color: None }
-}
-
-/// The largest of 1, 2, 5 times a power of ten that is not above `x`.
-fn round_number(x: Real) -> Real {
-    if !(x.is_finite() && x > 0.0) {
-        return 1.0;
-    }
-    let power = 10f64.powi(x.log10().floor() as i32);
-    [5.0, 2.0].into_iter().map(|k| k * power).find(|&k| k <= x).unwrap_or(power)
+    Wall { corners, normal, two_sided, endless: Some(round_down(radius / 3.0)), color: None }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn grids_have_round_numbers() {
-        let all = [0.013, 0.02, 0.7, 1.0, 4.99, 5.1, 9.9, 3e-40, 0.0, Real::NAN].map(round_number);
-        let right = [0.01, 0.02, 0.5, 1.0, 2.0, 5.0, 5.0, 2e-40, 1.0, 1.0];
-        assert!(all.iter().zip(right).all(|(a, b)| (a / b - 1.0).abs() < 1e-9), "{all:?}");
-    }
 
     #[test]
     fn a_patch_lies_in_its_plane_below_the_scene() {

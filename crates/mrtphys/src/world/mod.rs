@@ -13,6 +13,7 @@ use crate::counters::Counters;
 use crate::def::Settings;
 use crate::error::{Error, Result};
 use crate::event::ImpactEvent;
+use crate::id::BodyId;
 use crate::impact::{self, ImpactLaw};
 use crate::ledger::{Energy, Ledger};
 use crate::math::Real;
@@ -224,6 +225,11 @@ impl World {
     /// Contacts of the last step, for drawing.
     pub fn contacts(&self) -> &crate::contact::ContactList {
         &self.work.contacts
+    }
+
+    /// The body in a slot, as [`contacts`](World::contacts) names bodies: valid until bodies come or go or are sorted.
+    pub fn body_in_slot(&self, slot: u32) -> Option<BodyId> {
+        ((slot as usize) < self.body_count()).then(|| self.ids.id(slot as usize, self.tag))
     }
 
     /// Keys of the pairs that were in contact in the last step, ascending, where the friction law asks for them.
