@@ -1,7 +1,15 @@
 //! The window round a session.
 
 mod app;
+mod ask;
 mod desk;
+mod detail;
+mod labels;
+mod mouse;
+mod panel;
+mod picture;
+mod quantity;
+mod seeing;
 mod viewport;
 
 use crate::exit::{Failure, Outcome};
