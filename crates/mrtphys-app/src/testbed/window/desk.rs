@@ -1,6 +1,9 @@
 //! What all parts of the window share.
 
-use crate::testbed::session::{Command, Session};
+use super::action::Action;
+use super::probe::Probes;
+use super::seeing::Seeing;
+use crate::testbed::session::{Command, Report, Session, Wish};
 use eframe::egui;
 use mrtphys::BodyId;
 use mrtphys_scene::{Diagnostics, Scene};
@@ -19,10 +22,22 @@ pub struct Desk {
     pub look: Look,
     /// from where; the viewport moves it
     pub camera: Camera,
+    /// what is drawn over the bodies, and how the user looks at them
+    pub seeing: Seeing,
     /// the body whose properties are shown
     pub selected: Option<BodyId>,
+    /// what reports are to contain: empty at the beginning of every picture, and whoever needs something sets it
+    pub wish: Wish,
+    /// what the program is to do when all parts have been shown
+    pub actions: Vec<Action>,
+    /// counts the scenes that were opened: what belongs to the last one is forgotten when it changes
+    pub opened: u64,
     /// what is to be said to the user; shown until it is dismissed
     pub messages: Vec<Message>,
+    /// where named controls are
+    pub probes: Probes,
+    /// what was wished for last
+    sent: Wish,
 }
 
 /// Something to be said.
@@ -35,29 +50,59 @@ pub struct Message {
 }
 
 impl Desk {
-    /// A scene on the desk, standing still.
-    ///
-    /// # Errors
-    /// The scene's world cannot be made.
-    pub fn new(scene: Scene, context: &egui::Context) -> Result<Desk, Diagnostics> {
-        let name = scene.source.name.to_string();
-        let session = start(scene, context)?;
+    /// A session on the desk.
+    pub fn new(session: Session, name: String, path: Option<PathBuf>) -> Desk {
         let camera = session.report().sides[0].shot.stage.camera();
-        let look = Look::default();
-        Ok(Desk { session, name, path: None, look, camera, selected: None, messages: Vec::new() })
+        Desk {
+            session,
+            name,
+            path,
+            look: Look::default(),
+            camera,
+            seeing: Seeing::default(),
+            selected: None,
+            wish: Wish::default(),
+            actions: Vec::new(),
+            opened: 0,
+            messages: Vec::new(),
+            probes: Probes::default(),
+            sent: Wish::default(),
+        }
     }
 
-    /// Puts another scene on the desk, running. The look stays, the camera is the new scene's.
-    ///
-    /// # Errors
-    /// The scene's world cannot be made; the old one goes on.
-    pub fn open(&mut self, scene: Scene, path: Option<PathBuf>, context: &egui::Context) -> Result<(), Diagnostics> {
-        let name = scene.source.name.to_string();
-        self.session = start(scene, context)?;
+    /// Puts another session on the desk. The look stays, the camera is the new scene's.
+    pub fn replace(&mut self, session: Session, name: String, path: Option<PathBuf>) {
+        let old = std::mem::replace(&mut self.session, session);
+        // It ends with the step that it is making; nobody waits for that.
+        std::thread::spawn(move || drop(old));
         self.camera = self.session.report().sides[0].shot.stage.camera();
         (self.name, self.path, self.selected) = (name, path, None);
-        self.session.send(Command::Go(true));
-        Ok(())
+        (self.sent, self.opened) = (Wish::default(), self.opened + 1);
+    }
+
+    /// The newest report.
+    pub fn report(&self) -> &Report {
+        self.session.report()
+    }
+
+    /// Steers the session.
+    pub fn send(&self, command: Command) {
+        self.session.send(command);
+    }
+
+    /// Before the parts are shown: takes the newest report, and forgets what the last picture asked for.
+    pub fn begin(&mut self) {
+        self.session.poll();
+        self.wish = Wish { selected: self.selected, ..Wish::default() };
+        self.probes.clear();
+    }
+
+    /// After the parts were shown: asks for what they need.
+    pub fn end(&mut self) {
+        if self.wish != self.sent {
+            self.sent = self.wish.clone();
+            self.session.send(Command::Wish(self.wish.clone()));
+        }
     }
 
     /// Says that something was done.
@@ -71,7 +116,11 @@ impl Desk {
     }
 }
 
-fn start(scene: Scene, context: &egui::Context) -> Result<Session, Diagnostics> {
+/// Starts a session that wakes the window. May take long: not for the thread that draws.
+///
+/// # Errors
+/// The scene's world cannot be made.
+pub fn start(scene: Scene, context: &egui::Context) -> Result<Session, Diagnostics> {
     let wake = context.clone();
     Session::start(scene, move || wake.request_repaint())
 }

@@ -1,11 +1,14 @@
 //! What is written over the picture.
 
+use super::action::Action;
 use super::desk::Desk;
-use super::quantity::{count, duration, number, with_unit};
+use super::format::{count, duration};
+use super::quantity::{number, with_unit};
 use super::viewport::Pane;
 use crate::testbed::session::{Numbers, Report};
 use eframe::egui::{self, Align2, Color32, CornerRadius, FontId, Rect, Ui};
 use mrtphys_view::Legend;
+use std::time::Duration;
 
 /// Distance from the edges [points].
 const EDGE: f32 = 8.0;
@@ -74,7 +77,7 @@ pub fn costs(numbers: &Numbers) -> String {
     let c = &numbers.counters;
     format!(
         "{} a step, {} sphere tests, {} detect calls",
-        duration(step_time(numbers)),
+        duration(Duration::from_secs_f64(step_time(numbers))),
         count(c.sphere_tests),
         count(c.detect_calls)
     )
@@ -162,10 +165,9 @@ pub fn tools(ui: &mut Ui, rect: Rect, desk: &mut Desk) {
         let fit = ui.add(button("Fit")).on_hover_text(hint);
         desk.probes.mark("fit", &fit);
         if fit.clicked() {
-            let aspect = f64::from(rect.width().max(1.0) / rect.height().max(1.0));
-            desk.camera.fit(&desk.session.report().sides[0].shot.stage.bounds(), aspect);
+            desk.actions.push(Action::FitCamera);
         }
-        let hint = "the hand: a left drag on a body pulls it with a spring; let go to throw it (G, or hold Alt)";
+        let hint = "the hand: a left drag on a body pulls it with a spring; let go to throw it (H, or hold Alt)";
         let on = desk.seeing.hand;
         let hand = ui.add(egui::Button::new("Hand").selected(on).fill(if on { ui.visuals().selection.bg_fill } else { fill }));
         desk.probes.mark("hand", &hand);
@@ -179,7 +181,6 @@ pub fn tools(ui: &mut Ui, rect: Rect, desk: &mut Desk) {
 mod tests {
     use super::*;
     use mrtphys::counters::Counters;
-    use std::time::Duration;
 
     #[test]
     fn costs_are_those_of_a_step() {

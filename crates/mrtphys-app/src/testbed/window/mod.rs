@@ -1,5 +1,6 @@
 //! The window round a session.
 
+mod action;
 mod app;
 mod ask;
 mod desk;
@@ -10,6 +11,11 @@ mod panel;
 mod picture;
 mod quantity;
 mod seeing;
+mod format;
+#[allow(dead_code)]
+mod pending;
+mod probe;
+mod table;
 mod viewport;
 
 use crate::exit::{Failure, Outcome};

@@ -129,7 +129,7 @@ impl Viewport {
         }
         let panes = Pane::split(rect, desk.report().sides.len());
         self.prepare(desk, &panes, render);
-        self.keys(ui, desk, panes[0]);
+        Viewport::keys(ui, desk);
         self.mouse(ui, desk, &panes, &response);
         self.follow(desk);
         desk.seeing.sight.wish(&mut desk.wish);
@@ -159,7 +159,7 @@ impl Viewport {
         side.shot.stage.pick(self.pictures.get(pane.side)?.poses(), pane.ray(desk, at))
     }
 
-    fn keys(&mut self, ui: &mut egui::Ui, desk: &mut Desk, pane: Pane) {
+    fn keys(ui: &mut egui::Ui, desk: &mut Desk) {
         if ui.ctx().egui_wants_keyboard_input() {
             return;
         }
@@ -171,19 +171,13 @@ impl Viewport {
                 mouse::along_axis(&mut desk.camera, axis, false);
             }
         }
-        if pressed(Modifiers::NONE, Key::F) {
-            desk.camera.fit(&desk.report().sides[0].shot.stage.bounds(), pane.aspect());
-        }
-        if pressed(Modifiers::NONE, Key::C) {
-            desk.camera = desk.report().sides[0].shot.stage.camera();
-        }
-        if pressed(Modifiers::NONE, Key::G) {
+        if pressed(Modifiers::NONE, Key::H) {
             desk.seeing.hand ^= true;
         }
         if pressed(Modifiers::NONE, Key::L) {
             desk.seeing.follow ^= true;
         }
-        if pressed(Modifiers::NONE, Key::T) {
+        if pressed(Modifiers::NONE, Key::B) {
             throw_ball(desk);
         }
         if pressed(Modifiers::NONE, Key::Escape) {

@@ -4,7 +4,8 @@ use super::making::{self, Kind, Pattern};
 use crate::testbed::session::Studio;
 use crate::testbed::window::ask::Inquiry;
 use crate::testbed::window::desk::Desk;
-use crate::testbed::window::quantity::{Entry, count};
+use crate::testbed::window::format::count;
+use crate::testbed::window::quantity::Entry;
 use eframe::egui;
 use mrtphys::{BodyId, Real, Vec3};
 use mrtphys_scene::scene::MassDesc;
@@ -230,7 +231,7 @@ impl Form {
                     self.changed = Some(desk.report().number);
                     desk.session.edit(true, move |loaded| making::add(loaded, &pattern, near).map(drop));
                 }
-                let hint = "shoots the body from the eye along the middle line of sight, from where that enters the walls (T)";
+                let hint = "shoots the body from the eye along the middle line of sight, from where that enters the walls (B)";
                 if ui.button("Throw from the eye").on_hover_text(hint).clicked() {
                     self.changed = Some(desk.report().number);
                     let speed = self.speed.unwrap_or(short_speed(camera.distance()));

@@ -197,14 +197,14 @@ impl Body {
         ui.horizontal(|ui| {
             ui.label("Color");
             let stage = &desk.report().sides[0].shot.stage;
-            let mut rgb = stage.color(id).unwrap_or([128; 3]);
+            let mut rgb = stage.index(id).map_or([128; 3], |i| stage.color(i));
             let hint = "color in the picture; in a lattice, of all bodies of the same kind";
             if ui.color_edit_button_srgb(&mut rgb).on_hover_text(hint).changed() {
                 self.changed = Some(desk.report().number);
                 desk.session.edit(true, move |loaded| making::paint(loaded, id, rgb));
             }
             ui.checkbox(&mut desk.seeing.follow, "Follow").on_hover_text("the camera moves with this body (L)");
-            let trails = &mut desk.seeing;
+            let trails = &mut desk.seeing.sight;
             let mut on = trails.trail_of_selected;
             if ui.checkbox(&mut on, "Trail").on_hover_text("shows where this body has been").changed() {
                 trails.trail_of_selected = on;

@@ -1,0 +1,101 @@
+//! Help: mouse, keys and modes; and who made this.
+
+use super::keys::SHORTCUTS;
+use super::panel::meaning;
+use crate::testbed::session::RealTime;
+use eframe::egui;
+
+/// What the mouse does in the picture.
+const MOUSE: [(&str, &str); 8] = [
+    ("Left drag", "go round the point looked at, at the same distance"),
+    ("Middle drag", "move the point looked at"),
+    ("Right drag, vertical", "come nearer, or go away"),
+    ("Right drag, horizontal", "turn the picture about the line of sight"),
+    ("Wheel", "come nearer, or go away"),
+    ("Click on a body", "select it: its properties are in the panel"),
+    ("Drag a body with Ctrl", "hold it with a spring, and throw it"),
+    ("Drop a file on the window", "open a scene, or go on from a snapshot"),
+];
+
+/// How surfaces are drawn.
+const MODES: [(&str, &str); 5] = [
+    ("Wireframe", "the edges of all triangles"),
+    ("Hidden line", "the same without the edges that are hidden"),
+    ("Flat", "one color for each triangle"),
+    ("Gouraud", "lit at the corners, colors interpolated between them"),
+    ("Phong", "lit in every pixel, normals interpolated between the corners"),
+];
+
+/// The help and the about box.
+#[derive(Default)]
+pub struct Help {
+    /// whether the help is shown
+    pub open: bool,
+    /// whether the about box is shown
+    pub about: bool,
+}
+
+impl Help {
+    /// Shows what is open.
+    pub fn show(&mut self, context: &egui::Context, driver: &str) {
+        let center = context.content_rect().center();
+        let height = 0.66 * context.content_rect().height();
+        egui::Window::new("Help")
+            .open(&mut self.open)
+            .pivot(egui::Align2::CENTER_CENTER)
+            .default_pos(center)
+            .default_size([560.0, height])
+            .collapsible(false)
+            .vscroll(true)
+            .show(context, help);
+        egui::Window::new("About mrtphys")
+            .open(&mut self.about)
+            .pivot(egui::Align2::CENTER_CENTER)
+            .default_pos(center)
+            .resizable(false)
+            .collapsible(false)
+            .show(context, |ui| about(ui, driver));
+    }
+}
+
+fn table<'a>(ui: &mut egui::Ui, id: &str, title: &str, lines: impl Iterator<Item = (&'a str, &'a str)>) {
+    ui.strong(title);
+    egui::Grid::new(id).num_columns(2).striped(true).min_col_width(150.0).max_col_width(360.0).show(ui, |ui| {
+        for (name, text) in lines {
+            ui.label(name);
+            ui.add(egui::Label::new(text).wrap());
+            ui.end_row();
+        }
+    });
+    ui.add_space(10.0);
+}
+
+fn help(ui: &mut egui::Ui) {
+    table(ui, "mouse", "Mouse, in the picture", MOUSE.into_iter());
+    table(ui, "keys", "Keys, unless a text is being typed", SHORTCUTS.iter().map(|s| (s.name, s.text)));
+    table(ui, "realtime", "Realtime", RealTime::ALL.into_iter().map(|(mode, name)| (name, meaning(mode))));
+    table(ui, "modes", "Shading", MODES.into_iter());
+    ui.label("Every control says what it does when the mouse rests on it. The manual has the scene language, the physics and the files.");
+}
+
+fn about(ui: &mut egui::Ui, driver: &str) {
+    ui.heading("mrtphys");
+    ui.label("Rigid bodies that collide as physics says.");
+    ui.add_space(6.0);
+    egui::Grid::new("about").num_columns(2).show(ui, |ui| {
+        let lines = [
+            ("Version", crate::cli::version()),
+            ("Precision", "double (IEEE 754, 64 bits); the same bits on every machine".into()),
+            ("Drawn by", driver.to_string()),
+            ("Licence", env!("CARGO_PKG_LICENSE").into()),
+            ("Source", env!("CARGO_PKG_REPOSITORY").into()),
+        ];
+        for (name, text) in lines {
+            ui.label(name);
+            ui.add(egui::Label::new(text).wrap());
+            ui.end_row();
+        }
+    });
+    ui.add_space(6.0);
+    ui.label("Grown from a thesis of 1998 on physically based animation of rigid bodies.");
+}

@@ -1,0 +1,49 @@
+//! Tables of names and values in the panel.
+
+use eframe::egui;
+
+/// Two columns: names at the left, values at the right edge in letters of one width.
+pub fn rows(ui: &mut egui::Ui, rows: &[Row<'_>]) {
+    for row in rows {
+        line(ui, row);
+    }
+}
+
+/// A line of a table.
+pub struct Row<'a> {
+    /// at the left
+    pub name: &'a str,
+    /// at the right
+    pub value: String,
+    /// explains both
+    pub hint: &'a str,
+    /// a sum, which stands out
+    pub strong: bool,
+}
+
+impl<'a> Row<'a> {
+    /// An ordinary line.
+    pub fn new(name: &'a str, value: impl Into<String>, hint: &'a str) -> Row<'a> {
+        Row { name, value: value.into(), hint, strong: false }
+    }
+
+    /// A line that stands out.
+    pub fn sum(name: &'a str, value: impl Into<String>, hint: &'a str) -> Row<'a> {
+        Row { strong: true, ..Row::new(name, value, hint) }
+    }
+}
+
+fn line(ui: &mut egui::Ui, row: &Row<'_>) {
+    let line = ui.horizontal(|ui| {
+        let mut name = egui::RichText::new(row.name);
+        let mut value = egui::RichText::new(&row.value).monospace();
+        if row.strong {
+            (name, value) = (name.strong(), value.strong());
+        }
+        ui.label(name);
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.add(egui::Label::new(value).truncate());
+        });
+    });
+    line.response.on_hover_text(row.hint);
+}
