@@ -1,7 +1,7 @@
 //! Bodies made, copied, thrown and colored by hand: changes of a world, as plain functions.
 
 use mrtphys::math::Quat;
-use mrtphys::shape::{HalfSpace, LimitQuadrangle, Polyhedron, Shape, Sphere};
+use mrtphys::shape::{HalfSpace, LimitQuadrangle, Polyhedron, Sphere};
 use mrtphys::world::Body;
 use mrtphys::{BodyId, Real, Vec3, World};
 use mrtphys_scene::scene::{
