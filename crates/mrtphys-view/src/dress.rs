@@ -190,13 +190,13 @@ shape = { kind = \"sphere\", radius = 1 }
 position = [0, 0, 0]
 velocity = [0, 3, 4]
 [[body]]
-shape = { kind = \"cuboid\", size = [1, 2, 3] }
+shape = { kind = \"box\", size = [1, 2, 3] }
 position = [5, 0, 0]
 angular_velocity = [1, 2, 2]
 [[body]]
 shape = { kind = \"sphere\", radius = 1 }
 position = [9, 0, 0]
-mass = \"infinite\"
+fixed = true
 ";
         Scene::from_text("test", text).unwrap().build().unwrap()
     }
@@ -224,8 +224,8 @@ mass = \"infinite\"
         let dress = Dress { velocities: &v, contacts: &[2, 5, 1], ..Dress::default() };
         let (own, legend, _) = worn(&dress);
         assert_eq!(legend, None);
-        let body = loaded().world.bodies().nth(1).unwrap();
-        let energy = loaded().world.body(body).unwrap().rotational_energy();
+        let world = loaded().world;
+        let energy = world.body(world.bodies().nth(1).unwrap()).unwrap().rotational_energy();
         let top = round_up(energy.max(loaded().world.energy().linear));
         let part = |x: Real| opaque(Theme::Light.ramp(x));
         for (coloring, max, right) in [
@@ -275,8 +275,9 @@ mass = \"infinite\"
     #[test]
     fn the_outlined_bodies_are_in_the_frame() {
         let (_, _, frame) = worn(&Dress { highlight: &[1, 0, 77], ..Dress::default() });
-        let found: Vec<_> = frame.highlight.iter().map(|h| (h.batch, h.body)).collect();
-        assert_eq!(found, [(Some(0), frame.batches[0].instances[0]), (None, frame.spheres[0])]);
+        let found: Vec<_> = frame.highlight.iter().map(|h| (h.batch, h.body.position, h.body.scale)).collect();
+        let right = [(Some(0), frame.batches[0].instances[0]), (None, frame.spheres[0])];
+        assert_eq!(found, right.map(|(batch, b)| (batch, b.position, b.scale)));
         assert!(worn(&Dress::default()).2.highlight.is_empty());
     }
 }

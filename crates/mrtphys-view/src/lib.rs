@@ -38,6 +38,7 @@ mod lists;
 mod pipelines;
 mod canvas;
 mod gpu;
+mod outline;
 mod renderer;
 
 // Where it goes.

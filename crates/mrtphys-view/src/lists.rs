@@ -1,7 +1,7 @@
 //! A frame sorted into what is drawn at once: instances by surface, lines, walls. The lists are kept from picture to picture
 //! and allocate nothing once they have grown.
 
-use crate::frame::{Frame, Instance, Mode, Quality};
+use crate::frame::{Frame, Highlighted, Instance, Mode, Quality};
 use crate::mesh::{FINEST, level_for};
 use crate::overlay::{Block, Line};
 use mrtphys::Vec3;
@@ -14,6 +14,8 @@ const WALL_OPACITY: u8 = 150;
 const WALL_EDGE: f32 = 1.0;
 /// Spheres above this number are triangulated more coarsely: what is lost in each is lost in the crowd.
 const CROWD: usize = 20_000;
+/// A body of a smaller radius \[pixels\] is outlined as if it had this one.
+const SMALLEST_OUTLINED: f64 = 3.0;
 /// Spheres smaller than these radii \[pixels\] in a line drawing get so many levels fewer.
 const LINE_LEVELS: [(f64, u8); 3] = [(5.0, 0), (22.0, 1), (120.0, 2)];
 
@@ -62,6 +64,10 @@ pub struct Lists {
     pub draws: Vec<Draw>,
     /// translucent spheres
     pub bubbles: Range<u32>,
+    /// bodies that are outlined
+    pub outlined: Vec<Draw>,
+    /// what the outlines are within: left, top, right, bottom \[pixels\]
+    pub outline: [u32; 4],
     /// lines and dots: those behind bodies hidden, then those on top
     pub strokes: Vec<Stroke>,
     /// where those on top begin
@@ -76,6 +82,8 @@ pub struct Lists {
 /// What the lists depend on beside the frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Detail {
+    /// width of the picture \[pixels\]
+    pub width: u32,
     /// height of the picture \[pixels\]
     pub height: u32,
     /// how far a sphere may be from round \[pixels\]
@@ -96,6 +104,7 @@ impl Lists {
             self.push_draw(Form::Batch(i), &batch.instances);
         }
         self.bubbles(frame);
+        self.outlines(frame, detail);
         self.walls(frame, detail);
         self.boxes = self.faces.len() as u32;
         frame.overlay.blocks.iter().for_each(|b| self.block(frame, b));
@@ -143,6 +152,50 @@ impl Lists {
         let bubbles = frame.overlay.bubbles.iter();
         self.instances.extend(bubbles.filter_map(|b| frame.instance(b.center, b.radius, Quat::IDENTITY, b.color)));
         self.bubbles = start..self.instances.len() as u32;
+    }
+
+    /// Bodies that would be lost in the picture are outlined as if they were larger.
+    fn outlines(&mut self, frame: &Frame, detail: Detail) {
+        self.outlined.clear();
+        self.outline = [detail.width, detail.height, 0, 0];
+        let eye = frame.place(frame.camera.eye);
+        let pixels = f64::from(detail.height) / 2.0 / frame.camera.tan_half_fov();
+        for Highlighted { batch, body } in &frame.highlight {
+            let d = [0, 1, 2].map(|k| f64::from(body.position[k] - eye[k]));
+            let distance = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
+            let scale = body.scale.max((SMALLEST_OUTLINED * distance / pixels) as f32);
+            let level = level_for(f64::from(scale) * pixels / distance.max(f64::from(scale)), detail.tolerance);
+            let form = match batch {
+                Some(i) if *i < frame.batches.len() => Form::Batch(*i),
+                Some(_) => continue,
+                None => Form::Sphere(level),
+            };
+            let start = self.instances.len() as u32;
+            self.instances.push(Instance { scale, ..*body });
+            self.outlined.push(Draw { form, range: start..start + 1 });
+            self.widen_outline(frame, detail, body.position, scale);
+        }
+    }
+
+    /// The outline's part of the picture holds the cube about a body, and the width of its line.
+    fn widen_outline(&mut self, frame: &Frame, detail: Detail, position: [f32; 3], scale: f32) {
+        let size = [f64::from(detail.width), f64::from(detail.height)];
+        let [x, y, z] = position.map(f64::from);
+        let (center, half) = (frame.origin + Vec3::new(x, y, z) * frame.unit, f64::from(scale) * frame.unit);
+        let cube = Block { center, half: Vec3::splat(half), orientation: Quat::IDENTITY, color: [0; 4] };
+        let margin = 8.0 * f64::from(detail.line_width) + 2.0;
+        for corner in cube.corners() {
+            let place = frame.camera.place(corner, size[0] / size[1]);
+            // A corner beside or behind the eye may be anywhere.
+            let Some((x, y)) = place else {
+                self.outline = [0, 0, detail.width, detail.height];
+                return;
+            };
+            for (k, at) in [x * size[0], y * size[1]].into_iter().enumerate() {
+                self.outline[k] = self.outline[k].min((at - margin).clamp(0.0, size[k]) as u32);
+                self.outline[k + 2] = self.outline[k + 2].max((at + margin).clamp(0.0, size[k]).ceil() as u32);
+            }
+        }
     }
 
     fn walls(&mut self, frame: &Frame, detail: Detail) {
@@ -236,7 +289,7 @@ mod tests {
     use crate::frame::{Look, Wall};
     use crate::overlay::{Bubble, Point};
 
-    const DETAIL: Detail = Detail { height: 720, tolerance: 0.25, line_width: 1.0 };
+    const DETAIL: Detail = Detail { width: 1280, height: 720, tolerance: 0.25, line_width: 1.0 };
 
     fn frame() -> Frame {
         let camera = Camera { eye: Vec3::new(0.0, 0.0, 4.0), look_at: Vec3::ZERO, up: Vec3::Y, fov_deg: 45.0 };

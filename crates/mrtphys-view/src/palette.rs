@@ -105,6 +105,8 @@ pub struct Colors {
     pub ink: Rgb,
     /// faces of hidden-line drawings
     pub paper: Rgb,
+    /// outline of what is chosen
+    pub accent: Rgb,
 }
 
 impl Theme {
@@ -127,6 +129,7 @@ impl Theme {
                 wall_edge: [0x8d, 0x98, 0xa5],
                 ink: [0x10, 0x16, 0x20],
                 paper: [0xf7, 0xf9, 0xfb],
+                accent: [0xe0, 0x00, 0x5a],
             },
             Theme::Dark => Colors {
                 sky: [0x14, 0x17, 0x1c],
@@ -135,6 +138,7 @@ impl Theme {
                 wall_edge: [0x7a, 0x87, 0x98],
                 ink: [0xff, 0xff, 0xff],
                 paper: [0x1c, 0x20, 0x27],
+                accent: [0xff, 0xd2, 0x3c],
             },
         }
     }

@@ -66,7 +66,7 @@ impl Pen {
         let full = scale.follow(largest(velocities.iter().map(|v| v.0)));
         let mut drawn = 0;
         for i in spread(total, self.affordable(ARROW)) {
-            self.from_center(overlay, positions[i], velocities[i].0 / full, opaque(self.inks.velocity, 255));
+            self.arrow_from(overlay, positions[i], velocities[i].0 / full, opaque(self.inks.velocity, 255));
             drawn += 1;
         }
         Drawn { drawn, total }
@@ -86,7 +86,7 @@ impl Pen {
         let mut drawn = 0;
         for i in spread(total, self.affordable(ARROW + ARC.0 + 2)) {
             let spin = velocities[i].1 / full;
-            self.from_center(overlay, positions[i], spin, opaque(self.inks.spin, 255));
+            self.arrow_from(overlay, positions[i], spin, opaque(self.inks.spin, 255));
             self.arc(overlay, positions[i], spin);
             drawn += 1;
         }
@@ -94,7 +94,7 @@ impl Pen {
     }
 
     /// An arrow of the longest length times `part`, whose length is at most 1.
-    fn from_center(&self, overlay: &mut Overlay, from: Vec3, part: Vec3, color: [u8; 4]) {
+    fn arrow_from(&self, overlay: &mut Overlay, from: Vec3, part: Vec3, color: [u8; 4]) {
         let length = part.length();
         if length > 0.0 && length.is_finite() && from.is_finite() {
             let tip = from + part * (LONGEST * self.length / length.max(1.0));

@@ -106,9 +106,16 @@ impl Pen {
         (Drawn { drawn: order.len(), total: cells.len() }, legend)
     }
 
-    /// A box, cut off outside the scene; `None`: nothing of it is there.
+    /// A box; where it is infinite it ends outside the scene. `None`: it is empty.
     fn block(&self, bounds: &Aabb) -> Option<Block> {
-        let (min, max) = (bounds.min.max(self.region.min), bounds.max.min(self.region.max));
+        let ends = |axis: usize| {
+            let (min, max) = (bounds.min[axis], bounds.max[axis]);
+            let low = if min == Real::NEG_INFINITY { self.region.min[axis].min(max) } else { min };
+            let high = if max == Real::INFINITY { self.region.max[axis].max(low) } else { max };
+            (low, high)
+        };
+        let [x, y, z] = [0, 1, 2].map(ends);
+        let (min, max) = (Vec3::new(x.0, y.0, z.0), Vec3::new(x.1, y.1, z.1));
         let half = (max - min) * 0.5;
         let there = half.x >= 0.0 && half.y >= 0.0 && half.z >= 0.0 && half.is_finite();
         there.then(|| Block { center: (min + max) * 0.5, half, orientation: Quat::IDENTITY, color: [0; 4] })
@@ -133,7 +140,7 @@ mod tests {
 shape = { kind = \"sphere\", radius = 1.5 }
 position = [1, 2, 0]
 [[body]]
-shape = { kind = \"cuboid\", size = [1, 1, 2] }
+shape = { kind = \"box\", size = [1, 1, 2] }
 position = [-3, 0, 0]
 ";
         let loaded = Scene::from_text("test", text).unwrap().build().unwrap();
