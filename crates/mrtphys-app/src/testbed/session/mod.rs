@@ -1,15 +1,27 @@
 //! A world that lives on a thread of its own: commands go in, reports come out. Drawing never waits for physics, nor
 //! physics for drawing.
 
+// The contract.
 mod command;
 mod report;
+
+// How time passes.
 mod pace;
 mod time_code;
+
+// The worlds, how they are changed, seen and recorded.
+mod machine;
+mod hold;
+mod lane;
+mod extras;
+mod tape;
+mod core;
+mod restore;
 mod worker;
 
 pub use command::{Command, Grip, Studio, Wish};
 pub use pace::RealTime;
-pub use report::{Extras, Numbers, PaceReport, Report, Shot, Side, Timeline};
+pub use report::{Extras, Numbers, PaceReport, Report, Sample, Shot, Side, Timeline};
 pub use time_code::time_code;
 
 use mrtphys_scene::{Diagnostics, Scene};

@@ -29,7 +29,7 @@ pub struct Shot {
     pub poses: Arc<Poses>,
 }
 
-/// What happened in one frame, for plots.
+/// What happened in one frame, for plots; in several, where there were very many since the last report.
 #[derive(Clone, Debug, Default)]
 pub struct Sample {
     /// number in the recording
@@ -44,13 +44,17 @@ pub struct Sample {
     pub momentum: Vec3,
     /// angular momentum about the origin \[Js\]
     pub angular_momentum: Vec3,
-    /// counts of this frame's steps together
+    /// energy before the first step \[J\]
+    pub initial_energy: Energy,
+    /// frames it stands for; 0: an edit, or steps of a frame that is not complete
+    pub frames: u64,
+    /// counts of its steps together
     pub counts: Counters,
-    /// physical steps of this frame
-    pub steps: u32,
-    /// simulated time of this frame \[s\]
+    /// physical steps
+    pub steps: u64,
+    /// simulated time \[s\]
     pub duration: f64,
-    /// computing time of this frame
+    /// computing time
     pub cost: Duration,
 }
 
@@ -161,6 +165,11 @@ pub struct Timeline {
     pub last: u64,
     /// where we are
     pub now: u64,
+    /// frames from one that is recorded to the next: more than 1 where frames are made so fast that recording every one
+    /// would slow them down noticeably. Those between can be gone to as well
+    pub stride: u64,
+    /// whether the state at `now` is still being computed: the picture is already right, the numbers are not
+    pub restoring: bool,
 }
 
 /// Everything a window shows.
@@ -182,4 +191,6 @@ pub struct Report {
     pub rival_agrees: Option<bool>,
     /// what went wrong last: an edit that was refused, or a simulation that stopped
     pub trouble: Option<String>,
+    /// how often something went wrong: tells the same trouble again from trouble that is still shown
+    pub troubles: u64,
 }

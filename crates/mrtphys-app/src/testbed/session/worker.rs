@@ -1,14 +1,22 @@
-//! The thread of a session.
+//! The thread of a session: commands in, steps, reports out. Nothing here waits for a window.
 
 use super::Session;
 use super::command::Command;
-use super::pace::RealTime;
-use super::report::{Extras, Numbers, PaceReport, Report, Shot, Side, Timeline};
-use mrtphys_scene::{Diagnostics, Loaded, Scene};
-use mrtphys_view::{Poses, Stage};
-use std::sync::mpsc::{self, Receiver, TryRecvError};
+use super::core::{Core, News, Next};
+use super::lane;
+use super::report::Report;
+use mrtphys_scene::{Diagnostics, Scene};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, TryRecvError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
+
+/// A report that nobody has taken is replaced after so long.
+const PATIENCE: Duration = Duration::from_millis(100);
+/// Reports of frames may take this part of the time (one in so many).
+const TELLING_PART: u32 = 5;
+/// And they come no faster than this.
+const SHORTEST_GAP: Duration = Duration::from_millis(4);
 
 /// Where the thread leaves its newest report.
 #[derive(Clone, Default)]
@@ -25,119 +33,136 @@ impl Mailbox {
         found
     }
 
-    fn put(&self, report: Report) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(report);
+    fn is_empty(&self) -> bool {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).is_none()
+    }
+
+    /// Replaces the report. What may be told only once goes over from one that was not taken: samples (merged in pairs
+    /// where there are more than [`lane::MOST_SAMPLES`]) and impacts (the latest [`lane::MOST_IMPACTS`]).
+    fn put(&self, mut report: Report) {
+        let mut place = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(old) = place.take() {
+            for (new, old) in report.sides.iter_mut().zip(old.sides) {
+                carry_over(old, new);
+            }
+        }
+        *place = Some(report);
+    }
+}
+
+fn carry_over(old: super::report::Side, new: &mut super::report::Side) {
+    // After a jump back the old samples are of frames that are no more: a history cuts itself when it sees the new ones.
+    let mut samples = old.samples;
+    samples.append(&mut new.samples);
+    new.samples = samples;
+    lane::thin(&mut new.samples);
+    if !new.extras.impacts.is_empty() || !old.extras.impacts.is_empty() {
+        let mut impacts = old.extras.impacts;
+        impacts.append(&mut new.extras.impacts);
+        let extra = impacts.len().saturating_sub(lane::MOST_IMPACTS);
+        impacts.drain(..extra);
+        new.extras.impacts = impacts;
     }
 }
 
 /// Starts the thread.
 pub fn start(scene: Scene, wake: Box<dyn Fn() + Send>) -> Result<Session, Diagnostics> {
-    let loaded = scene.build()?;
-    let mut worker = Worker::new(loaded);
-    let report = worker.report();
+    let mut core = Core::new(scene.build()?, Box::new(Instant::now));
+    let report = core.report();
     let (sender, commands) = mpsc::channel();
     let mailbox = Mailbox::default();
-    let postbox = mailbox.clone();
-    let thread = std::thread::spawn(move || worker.live(&commands, &postbox, &*wake));
-    Ok(Session { commands: Some(sender), mailbox, thread: Some(thread), report })
+    let mut worker = Worker { core, commands, mailbox: mailbox.clone(), wake, told: None };
+    let thread = std::thread::Builder::new().name("session".into()).spawn(move || worker.live());
+    let (thread, report) = match thread {
+        Ok(thread) => (Some(thread), report),
+        Err(e) => (None, Report { trouble: Some(format!("no thread for the simulation: {e}")), troubles: 1, ..report }),
+    };
+    Ok(Session { commands: Some(sender), mailbox, thread, report })
 }
 
 struct Worker {
-    loaded: Loaded,
-    running: bool,
-    number: u64,
-    tick: u64,
-    before: Arc<Shot>,
-    shot: Arc<Shot>,
-    trouble: Option<String>,
+    core: Core,
+    commands: Receiver<Command>,
+    mailbox: Mailbox,
+    wake: Box<dyn Fn() + Send>,
+    /// when the last report was made, and what that took
+    told: Option<(Instant, Duration)>,
 }
 
+/// The session is over.
+struct Over;
+
 impl Worker {
-    fn new(loaded: Loaded) -> Worker {
-        let stage = Arc::new(Stage::new(&loaded));
-        let mut poses = Poses::default();
-        stage.read(&loaded.world, &mut poses);
-        let shot = Arc::new(Shot { tick: 0, frame: 0, time: 0.0, stage, poses: Arc::new(poses) });
-        Worker { loaded, running: false, number: 0, tick: 0, before: shot.clone(), shot, trouble: None }
-    }
-
-    fn live(&mut self, commands: &Receiver<Command>, mailbox: &Mailbox, wake: &dyn Fn()) {
+    /// Until nobody can send commands any more. A panic is a fault of this program: it is said, and the session goes on from
+    /// the last whole frame if it can.
+    fn live(&mut self) {
         loop {
-            match commands.try_recv() {
-                Ok(command) => {
-                    self.obey(command);
-                    continue;
-                }
-                Err(TryRecvError::Disconnected) => return,
-                Err(TryRecvError::Empty) => {}
+            let Err(panic) = catch_unwind(AssertUnwindSafe(|| while self.turn().is_ok() {})) else { return };
+            let what = panic.downcast_ref::<String>().map(String::as_str);
+            let what = what.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("unknown");
+            let message = format!("the program has a fault ({what}); please report it");
+            if catch_unwind(AssertUnwindSafe(|| self.core.recover(&message))).is_err() {
+                let _ = catch_unwind(AssertUnwindSafe(|| {
+                    let mut report = self.core.last_report();
+                    report.running = false;
+                    report.trouble = Some(format!("{message}. The session is over: open the scene again"));
+                    report.troubles += 1;
+                    self.mailbox.put(report);
+                    (self.wake)();
+                }));
+                return;
             }
-            if self.running {
-                self.frame();
+        }
+    }
+
+    /// All commands there are, one physical step, a report if it is time; then sleeps until there is something to do.
+    fn turn(&mut self) -> Result<(), Over> {
+        loop {
+            match self.commands.try_recv() {
+                Ok(command) => self.core.obey(command),
+                Err(TryRecvError::Empty) => break,
+                Err(TryRecvError::Disconnected) => return Err(Over),
             }
-            mailbox.put(self.report());
-            wake();
-            std::thread::sleep(Duration::from_millis(15));
         }
-    }
-
-    fn obey(&mut self, command: Command) {
-        match command {
-            Command::Go(on) => self.running = on,
-            Command::Frame => self.frame(),
-            Command::Edit { change, .. } => self.trouble = change(&mut self.loaded).err(),
-            _ => {}
-        }
-    }
-
-    fn frame(&mut self) {
-        if let Err(e) = self.loaded.world.frame() {
-            self.trouble = Some(e.to_string());
-            self.running = false;
-        }
-        self.tick += 1;
-        let stage = self.shot.stage.clone();
-        let mut poses = Poses::default();
-        stage.read(&self.loaded.world, &mut poses);
-        let time = self.loaded.world.time();
-        let shot = Shot { tick: self.tick, frame: self.tick, time, stage, poses: Arc::new(poses) };
-        self.before = std::mem::replace(&mut self.shot, Arc::new(shot));
-    }
-
-    fn report(&mut self) -> Report {
-        self.number += 1;
-        let w = &self.loaded.world;
-        let numbers = Numbers {
-            settings: w.settings().clone(),
-            frame: self.tick,
-            time: w.time(),
-            steps: w.steps(),
-            bodies: w.body_count(),
-            energy: w.energy(),
-            ..Numbers::default()
+        let next = self.core.work();
+        let again = self.tell();
+        let until = match (next, again) {
+            (Next::Now, _) => return Ok(()),
+            (Next::At(due), Some(again)) => due.min(again),
+            (Next::At(due), None) => due,
+            (Next::Never, Some(again)) => again,
+            (Next::Never, None) => {
+                let command = self.commands.recv().map_err(|_| Over)?;
+                self.core.obey(command);
+                return Ok(());
+            }
         };
-        let side = Side {
-            before: self.before.clone(),
-            shot: self.shot.clone(),
-            numbers,
-            extras: Extras::default(),
-            samples: Vec::new(),
-        };
-        Report {
-            number: self.number,
-            title: self.loaded.scene.title.clone(),
-            running: self.running,
-            pace: PaceReport {
-                real_time: RealTime::IfPossible,
-                speed: 1.0,
-                fps_reached: 0.0,
-                skipped: 0,
-                since: Instant::now(),
-                blend: Duration::from_millis(15),
-            },
-            timeline: Timeline { first: 0, last: self.tick, now: self.tick },
-            sides: vec![side],
-            rival_agrees: None,
-            trouble: self.trouble.clone(),
+        match self.commands.recv_timeout(until.saturating_duration_since(Instant::now())) {
+            Ok(command) => self.core.obey(command),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return Err(Over),
         }
+        Ok(())
+    }
+
+    /// Makes a report, if there are news and it is time; else says when that will be.
+    fn tell(&mut self) -> Option<Instant> {
+        let (news, good_moment) = self.core.news();
+        if news == News::None || !(good_moment || news == News::Answer) {
+            return None;
+        }
+        let now = Instant::now();
+        if let (News::Frame, Some((then, cost))) = (news, self.told) {
+            let gap = SHORTEST_GAP.max(cost * TELLING_PART);
+            let due = then + if self.mailbox.is_empty() { gap } else { gap.max(PATIENCE) };
+            if now < due {
+                return Some(due);
+            }
+        }
+        let report = self.core.report();
+        self.mailbox.put(report);
+        (self.wake)();
+        self.told = Some((now, now.elapsed()));
+        None
     }
 }
