@@ -1,0 +1,250 @@
+//! The plots at the bottom: what happens over time, and the distribution of speeds.
+
+use crate::testbed::window::ask::Inquiry;
+use crate::testbed::window::desk::Desk;
+use crate::testbed::window::plot::{Chart, Gas, Histogram, Trace, csv, curves, power_of_ten};
+use crate::testbed::window::quantity::{deviation, number, short};
+use eframe::egui::{self, Color32};
+use egui_plot::{Bar, BarChart, HoverPosition, Legend, Line, LineStyle, Plot, PlotPoints, VLine};
+use mrtphys_view::Stage;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Colors of curves (Okabe and Ito 2008), darkened where they would be faint on light.
+const ON_LIGHT: [[u8; 3]; 10] = [
+    [0x00, 0x72, 0xb2],
+    [0xc9, 0x82, 0x00],
+    [0x00, 0x8f, 0x68],
+    [0xd5, 0x5e, 0x00],
+    [0x2b, 0x8c, 0xc4],
+    [0xb0, 0x4f, 0x87],
+    [0x8a, 0x80, 0x00],
+    [0x44, 0x44, 0x44],
+    [0x7a, 0x3d, 0x9a],
+    [0x00, 0x00, 0x00],
+];
+/// The same for a dark background.
+const ON_DARK: [[u8; 3]; 10] = [
+    [0x4a, 0xa8, 0xe8],
+    [0xe6, 0x9f, 0x00],
+    [0x20, 0xc9, 0x97],
+    [0xff, 0x7a, 0x1a],
+    [0x9a, 0xd4, 0xf5],
+    [0xe5, 0x95, 0xc2],
+    [0xf0, 0xe4, 0x42],
+    [0xb0, 0xb8, 0xc0],
+    [0xc3, 0x9b, 0xe0],
+    [0xff, 0xff, 0xff],
+];
+
+/// While the scene runs it is looked at this often whether it is a gas.
+const LOOK_EVERY: Duration = Duration::from_secs(1);
+
+/// The area.
+#[derive(Default)]
+pub struct Plots {
+    chart: Chart,
+    trace: Trace,
+    /// the histogram that is shown, and of which report
+    speeds: Option<(u64, Histogram)>,
+    /// what is shown while the plots are held
+    held: Option<Trace>,
+    /// the report that was taken last, and of which scene
+    taken: Option<(u64, u64)>,
+    gas: Inquiry<Option<Gas>>,
+    asked: Option<(Arc<Stage>, Instant)>,
+    reset: bool,
+}
+
+impl Plots {
+    /// Takes what is new; to be called for every picture, whether the plots are seen or not.
+    pub fn take(&mut self, desk: &Desk) {
+        let (number, opened) = (desk.report().number, desk.opened);
+        match self.taken {
+            Some((_, before)) if before != opened => {
+                self.trace.clear();
+                (self.held, self.speeds, self.asked) = (None, None, None);
+                self.gas.clear();
+            }
+            Some((before, _)) if before == number => return,
+            _ => {}
+        }
+        self.taken = Some((number, opened));
+        self.trace.extend(&desk.report().sides[0].samples);
+    }
+
+    /// Shows them.
+    pub fn show(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+        self.take(desk);
+        ui.horizontal_wrapped(|ui| {
+            for (chart, name, _, hint) in Chart::ALL {
+                let response = ui.selectable_value(&mut self.chart, chart, name).on_hover_text(hint);
+                desk.probes.mark(name, &response);
+            }
+            ui.separator();
+            let mut hold = self.held.is_some();
+            let hint = "the plot stands still to be read; the simulation goes on";
+            if ui.toggle_value(&mut hold, "Hold").on_hover_text(hint).changed() {
+                self.held = hold.then(|| self.trace.clone());
+            }
+            if ui.button("Whole").on_hover_text("shows everything again after zooming (double click)").clicked() {
+                self.reset = true;
+            }
+            if ui.button("CSV").on_hover_text("writes everything that was plotted into a file, one line a frame").clicked() {
+                self.write(desk);
+            }
+        });
+        match self.chart {
+            Chart::Speeds => self.histogram(ui, desk),
+            chart => self.over_time(ui, desk, chart),
+        }
+    }
+
+    fn over_time(&mut self, ui: &mut egui::Ui, desk: &Desk, chart: Chart) {
+        if chart == Chart::Impacts {
+            self.ask_for_gas(ui, desk);
+        }
+        let gas = self.gas.answer().copied().flatten();
+        let shown = self.held.as_ref().unwrap_or(&self.trace);
+        let all = curves(chart, shown.moments(), gas.as_ref());
+        let colors = if ui.visuals().dark_mode { &ON_DARK } else { &ON_LIGHT };
+        let line_of = if ui.visuals().dark_mode { Color32::from_gray(120) } else { Color32::from_gray(150) };
+        let now = desk.report().sides[0].numbers.time;
+        let mut plot = frame(chart, self.reset).x_axis_label("simulated time [s]");
+        if chart == Chart::Drift {
+            plot = plot
+                .y_axis_formatter(|mark, _| power_of_ten(mark.value))
+                .y_grid_spacer(egui_plot::uniform_grid_spacer(|_| [1.0, 3.0, 6.0]))
+                .include_y(-16.5)
+                .include_y(-13.0);
+        }
+        plot = plot.label_formatter(move |at| label(chart, at));
+        self.reset = false;
+        plot.show(ui, |ui| {
+            for curve in all {
+                let [r, g, b] = colors[curve.color % colors.len()];
+                let style = if curve.dashed { LineStyle::dashed_loose() } else { LineStyle::Solid };
+                let line = Line::new(curve.name, PlotPoints::from(curve.points));
+                ui.line(line.color(Color32::from_rgb(r, g, b)).style(style).width(1.6));
+            }
+            ui.vline(VLine::new("", now).color(line_of).width(1.0).allow_hover(false));
+        });
+    }
+
+    /// Whether the scene is a gas whose rate of collisions theory knows.
+    fn ask_for_gas(&mut self, ui: &egui::Ui, desk: &Desk) {
+        let stage = &desk.report().sides[0].shot.stage;
+        let due = self.asked.as_ref().is_none_or(|(s, at)| !Arc::ptr_eq(s, stage) || at.elapsed() > LOOK_EVERY);
+        // A gas of a million is looked at when it comes, and not again every second.
+        let again = self.asked.is_none() || stage.body_count() < 50_000;
+        if due && again && !self.gas.is_waiting() {
+            self.gas.ask(&desk.session, ui.ctx(), |studio| Gas::of(&studio.loaded.world));
+            self.asked = Some((stage.clone(), Instant::now()));
+        }
+    }
+
+    fn histogram(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+        desk.wish.speeds = true;
+        let number_of_report = desk.report().number;
+        if self.held.is_none() && self.speeds.as_ref().is_none_or(|s| s.0 != number_of_report) {
+            let found = Histogram::new(&desk.report().sides[0].extras.speeds);
+            self.speeds = found.map(|h| (number_of_report, h));
+        }
+        let Some((_, h)) = &self.speeds else {
+            ui.weak("Nothing moves.");
+            return;
+        };
+        let colors = if ui.visuals().dark_mode { &ON_DARK } else { &ON_LIGHT };
+        let color = |i: usize| Color32::from_rgb(colors[i][0], colors[i][1], colors[i][2]);
+        let (chi, bins) = h.chi_squared();
+        if bins > 2 {
+            let text = format!("chi squared {} of {bins} bins", short(chi));
+            ui.weak(text).on_hover_text("about as large as the number of bins in equilibrium; much larger: no equilibrium yet");
+        }
+        let middle = |i: usize| (i as f64 + 0.5) * h.width;
+        let bars: Vec<Bar> = h.counts.iter().enumerate().map(|(i, n)| Bar::new(middle(i), f64::from(*n)).width(h.width * 0.92)).collect();
+        let error = |i: usize, n: f64| vec![[middle(i), (n - n.sqrt()).max(0.0)], [middle(i), n + n.sqrt()]];
+        let plot = frame(Chart::Speeds, self.reset).x_axis_label("speed [m/s]").include_y(0.0).include_x(0.0);
+        self.reset = false;
+        plot.label_formatter(|at| label(Chart::Speeds, at)).show(ui, |ui| {
+            ui.bar_chart(BarChart::new("bodies", bars).color(color(0).gamma_multiply(0.55)).allow_hover(false));
+            for (i, n) in h.counts.iter().enumerate().filter(|(_, n)| **n > 0) {
+                let bar = Line::new("error: root of the number", error(i, f64::from(*n)));
+                ui.line(bar.color(color(7)).width(1.2).allow_hover(false));
+            }
+            ui.line(Line::new("Maxwell-Boltzmann", h.curve.clone()).color(color(3)).width(2.0));
+        });
+    }
+
+    /// Writes what was plotted beside where the program was started.
+    fn write(&self, desk: &mut Desk) {
+        let text = csv(self.held.as_ref().unwrap_or(&self.trace).moments());
+        let path = free_path(&desk.name, |p| p.exists());
+        match std::fs::write(&path, text) {
+            Ok(()) => desk.say(format!("Plots written to {}", path.display())),
+            Err(e) => desk.complain(format!("{}: {e}", path.display())),
+        }
+    }
+}
+
+/// A plot as all of them are.
+fn frame<'a>(chart: Chart, reset: bool) -> Plot<'a> {
+    let plot = Plot::new(("plot", chart.unit(), chart as u8))
+        .legend(Legend::default().position(egui_plot::Corner::LeftTop).background_alpha(0.7))
+        .y_axis_label(chart.unit())
+        .y_axis_min_width(52.0)
+        .y_axis_formatter(|mark, _| number(mark.value))
+        .allow_scroll(false)
+        .set_margin_fraction(egui::vec2(0.01, 0.08));
+    if reset { plot.reset() } else { plot }
+}
+
+/// What stands beside the mouse.
+fn label(chart: Chart, at: &HoverPosition<'_>) -> Option<String> {
+    let HoverPosition::NearDataPoint { plot_name, position, .. } = at else { return None };
+    let value = match chart {
+        Chart::Drift => deviation(10f64.powf(position.y)),
+        Chart::Speeds => return Some(format!("{plot_name}: {} bodies\nat {} m/s", short(position.y), short(position.x))),
+        _ => format!("{} {}", number(position.y), chart.unit()),
+    };
+    Some(format!("{plot_name}: {value}\nat {} s", number(position.x)))
+}
+
+/// The first name in a row that no file has: `cube-8-plots.csv`, `cube-8-plots-2.csv`.
+fn free_path(scene: &str, exists: impl Fn(&std::path::Path) -> bool) -> PathBuf {
+    let stem = scene.rsplit(['/', '\\']).next().unwrap_or(scene).trim_end_matches(".toml");
+    let stem = if stem.is_empty() { "scene" } else { stem };
+    let name = |n: u32| match n {
+        1 => PathBuf::from(format!("{stem}-plots.csv")),
+        n => PathBuf::from(format!("{stem}-plots-{n}.csv")),
+    };
+    (1..10_000).map(name).find(|p| !exists(p)).unwrap_or_else(|| name(10_000))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn no_file_is_overwritten() {
+        assert_eq!(free_path("thesis/cube-8", |_| false), Path::new("cube-8-plots.csv"));
+        assert_eq!(free_path("/a/b/pile.toml", |p| p == Path::new("pile-plots.csv")), Path::new("pile-plots-2.csv"));
+        assert_eq!(free_path("", |_| false), Path::new("scene-plots.csv"));
+    }
+
+    #[test]
+    fn curves_stand_out_from_their_background() {
+        for (colors, dark) in [(ON_LIGHT, false), (ON_DARK, true)] {
+            for [r, g, b] in colors {
+                let light = mrtphys_view::palette::to_linear(r) * 0.2126
+                    + mrtphys_view::palette::to_linear(g) * 0.7152
+                    + mrtphys_view::palette::to_linear(b) * 0.0722;
+                // Contrast of at least 3 (WCAG 2.1) with white, or with egui's dark grey.
+                let contrast = if dark { (light + 0.05) / (0.011 + 0.05) } else { 1.05 / (light + 0.05) };
+                assert!(contrast >= 3.0, "{r:x} {g:x} {b:x}: {contrast}");
+            }
+        }
+    }
+}
