@@ -6,7 +6,7 @@ use crate::choices;
 use crate::exit::{Failure, Outcome, complain};
 use crate::plan::{End, check_seconds};
 use crate::render_args::RenderArgs;
-use crate::{bench, check, experiment, list, output, render, run, setup, testbed};
+use crate::{bench, check, experiment, list, output, render, run, testbed};
 use clap::{Args, Parser, Subcommand};
 use mrtphys::{Algorithm, BroadPhaseKind, FrictionLaw, ImpactMode};
 use std::ffi::OsString;
@@ -97,7 +97,7 @@ pub struct RunArgs {
 }
 
 /// Options of `view`.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug, Default)]
 pub struct ViewArgs {
     /// A scene file, or the name of a gallery scene; without it, the gallery
     pub scene: Option<OsString>,
@@ -106,10 +106,19 @@ pub struct ViewArgs {
     /// Frames per second of simulated time
     #[arg(long, value_name = "N", value_parser = rate)]
     pub fps: Option<u32>,
+    /// Stand still at the first frame
+    #[arg(long)]
+    pub paused: bool,
+    /// Width and height of the window at first [points]
+    #[arg(long, value_name = "WxH", value_parser = crate::render_args::size)]
+    pub size: Option<(u32, u32)>,
+    /// For tests: write what the panel says, and where its controls are, whenever it changes
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub status: Option<PathBuf>,
 }
 
 /// How a scene is simulated: options of every command that does.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug, Default)]
 pub struct SimulationArgs {
     /// Time-stepping algorithm: fixed-step
     #[arg(long, value_name = "NAME", value_parser = choices::algorithm)]
@@ -173,7 +182,7 @@ fn whole(text: &str, low: u64, high: u64) -> Result<u64, String> {
 }
 
 /// Version, precision and the instruction set that this machine has.
-fn version() -> String {
+pub fn version() -> String {
     format!("{} (f64, {})", env!("CARGO_PKG_VERSION"), instruction_set())
 }
 
@@ -208,8 +217,8 @@ pub fn main() -> ExitCode {
 
 fn dispatch(cli: Cli) -> Outcome {
     match cli.command {
-        None => testbed::open(None),
-        Some(Command::View(args)) => view(&args),
+        None => testbed::open(&ViewArgs::default()),
+        Some(Command::View(args)) => testbed::open(&args),
         Some(Command::Render(args)) => render::render(&args, cli.quiet),
         Some(Command::Experiment(later)) => experiment::experiment(&later.args, cli.quiet),
         Some(Command::Validate(_)) => {
@@ -221,13 +230,6 @@ fn dispatch(cli: Cli) -> Outcome {
         Some(Command::Scenes) => list::scenes(),
         Some(Command::Schema) => list::schema(),
     }
-}
-
-fn view(args: &ViewArgs) -> Outcome {
-    let Some(name) = &args.scene else { return testbed::open(None) };
-    let mut scene = setup::load(name)?;
-    setup::apply(&args.simulation, args.fps, &mut scene);
-    testbed::open(Some(scene))
 }
 
 #[cfg(test)]

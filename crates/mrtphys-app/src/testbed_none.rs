@@ -1,10 +1,10 @@
 //! The testbed, in a build without it.
 
+use crate::cli::ViewArgs;
 use crate::exit::{Failure, Outcome};
-use mrtphys_scene::Scene;
 
 /// Says what is missing.
-pub fn open(_scene: Option<Scene>) -> Outcome {
+pub fn open(_args: &ViewArgs) -> Outcome {
     Err(Failure::Wrong(
         "this program was built without the testbed (cargo feature 'testbed'); 'mrtphys run SCENE' simulates without a window, 'mrtphys scenes' lists the gallery".into(),
     ))

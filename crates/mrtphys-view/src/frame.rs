@@ -162,6 +162,8 @@ pub struct Wall {
     pub two_sided: bool,
     /// goes on beyond what is drawn: fades out, with a grid of this width \[m\] to show how far
     pub endless: Option<Real>,
+    /// which edges are drawn, from each corner to the next; those of endless faces are not
+    pub edges: [bool; 4],
     /// color; `None`: the theme's
     pub color: Option<Rgb>,
 }

@@ -1,7 +1,7 @@
 //! A frame sorted into what is drawn at once: instances by surface, lines, walls. The lists are kept from picture to picture
 //! and allocate nothing once they have grown.
 
-use crate::frame::{Frame, Highlighted, Instance, Mode, Quality};
+use crate::frame::{Frame, Highlighted, Instance, Mode, Quality, Wall};
 use crate::mesh::{FINEST, level_for};
 use crate::overlay::{Block, Line};
 use mrtphys::Vec3;
@@ -77,6 +77,7 @@ pub struct Lists {
     /// where those of boxes begin
     pub boxes: u32,
     levels: Vec<u8>,
+    wall_edges: Vec<Stroke>,
 }
 
 /// What the lists depend on beside the frame.
@@ -204,7 +205,7 @@ impl Lists {
             let from_eye = wall.corners[0] - frame.camera.eye;
             let front = from_eye.dot(wall.normal) < 0.0;
             if wall.endless.is_none() {
-                self.outline(frame, &wall.corners, opaque(colors.wall_edge), detail.line_width * WALL_EDGE, front);
+                self.edges_of(frame, wall, opaque(colors.wall_edge), detail.line_width * WALL_EDGE, front);
             }
             if !(front || wall.two_sided) || frame.look.mode == Mode::Wireframe {
                 continue;
@@ -219,16 +220,34 @@ impl Lists {
             let kind = [f32::from(wall.endless.is_some()), 1.0, (wall.endless.unwrap_or(0.0) / frame.unit) as f32, 0.0];
             self.face(frame, corners, kind, color);
         }
+        self.shared_edges();
     }
 
-    /// An edge that two walls share is drawn once or twice; behind the scene a little fainter.
-    fn outline(&mut self, frame: &Frame, corners: &[Vec3; 4], color: [u8; 4], width: f32, front: bool) {
+    /// Edges of a wall; behind the scene a little fainter.
+    fn edges_of(&mut self, frame: &Frame, wall: &Wall, color: [u8; 4], width: f32, front: bool) {
         let [r, g, b, a] = color;
         let color = [r, g, b, if front { a } else { a / 2 }];
-        for i in 0..4 {
-            let (start, end) = (frame.place(corners[i]), frame.place(corners[(i + 1) % 4]));
-            self.stroke(Stroke { start, width, end, color });
+        for i in (0..4).filter(|i| wall.edges[*i]) {
+            let (start, end) = (frame.place(wall.corners[i]), frame.place(wall.corners[(i + 1) % 4]));
+            if start != end {
+                self.wall_edges.push(Stroke { start, width, end, color });
+            }
         }
+    }
+
+    /// An edge that walls share is drawn once, as that of the nearest to the front.
+    fn shared_edges(&mut self) {
+        // Adding zero makes a negative zero positive.
+        let bits = |p: [f32; 3]| p.map(|x| (x + 0.0).to_bits());
+        let ends = |s: &Stroke| {
+            let (a, b) = (bits(s.start), bits(s.end));
+            (a.min(b), a.max(b))
+        };
+        let mut edges = std::mem::take(&mut self.wall_edges);
+        edges.sort_by_key(|s| (ends(s), std::cmp::Reverse(s.color[3])));
+        edges.dedup_by_key(|s| ends(s));
+        edges.drain(..).for_each(|s| self.stroke(s));
+        self.wall_edges = edges;
     }
 
     fn block(&mut self, frame: &Frame, block: &Block) {
@@ -286,7 +305,7 @@ fn opaque([r, g, b]: [u8; 3]) -> [u8; 4] {
 mod tests {
     use super::*;
     use crate::camera::Camera;
-    use crate::frame::{Look, Wall};
+    use crate::frame::Look;
     use crate::overlay::{Bubble, Point};
 
     const DETAIL: Detail = Detail { width: 1280, height: 720, tolerance: 0.25, line_width: 1.0 };
@@ -323,13 +342,51 @@ mod tests {
     #[test]
     fn walls_are_drawn_from_their_front_only() {
         let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|p| Vec3::new(p[0], p[1], -1.0));
-        let wall = Wall { corners, normal: Vec3::Z, two_sided: false, endless: None, color: None };
+        let wall = Wall { corners, normal: Vec3::Z, two_sided: false, endless: None, edges: [true; 4], color: None };
         let mut frame = frame();
         let back = Wall { normal: -Vec3::Z, ..wall };
         frame.walls = vec![wall, back, Wall { two_sided: true, ..back }];
         let mut lists = Lists::default();
         lists.collect(&frame, DETAIL);
-        assert_eq!((lists.faces.len(), lists.strokes.len()), (2, 12));
+        assert_eq!((lists.faces.len(), lists.strokes.len()), (2, 4));
+    }
+
+    #[test]
+    fn the_edges_of_a_box_are_drawn_once() {
+        let text = "format = 1\n[[boundary]]\nkind = \"box\"\nmin = [-1, -1, -1]\nmax = [1.1, 1.2, 1.3]\n[camera]\neye = [2, 3, 5]\nlook_at = [0, 0, 0]\n";
+        let loaded = mrtphys_scene::Scene::from_text("test", text).unwrap().build().unwrap();
+        let frame = crate::frame_of(&loaded, Look::default());
+        let mut lists = Lists::default();
+        lists.collect(&frame, DETAIL);
+        assert_eq!(lists.strokes.len(), 12);
+        // Nine edges border a face whose front is seen, and are drawn in full.
+        assert_eq!(lists.strokes.iter().filter(|s| s.color[3] == 255).count(), 9);
+        lists.collect(&frame, DETAIL);
+        assert_eq!(lists.strokes.len(), 12, "and nothing is left of the last picture");
+    }
+
+    #[test]
+    fn an_outline_lies_within_its_part_of_the_picture() {
+        let mut frame = frame();
+        let near = frame.spheres[1];
+        let tiny = Instance { position: [20.0, 20.0, -100.0], scale: 1e-4, ..near };
+        for (body, full) in [(near, true), (tiny, false)] {
+            frame.highlight = vec![Highlighted { batch: None, body }];
+            let mut lists = Lists::default();
+            lists.collect(&frame, DETAIL);
+            let [l, t, r, b] = lists.outline;
+            let (width, height) = (r - l, b - t);
+            assert_eq!(width > 600 && height > 600, full, "{:?}", lists.outline);
+            assert!(l < r && t < b && r <= 1280 && b <= 720);
+            assert!(full || (l > 640 && b < 360 && (20..60).contains(&width)), "{:?}", lists.outline);
+            assert_eq!(lists.outlined.len(), 1);
+            let drawn = lists.instances[lists.outlined[0].range.start as usize];
+            assert_eq!(drawn.scale > body.scale, !full, "what would be lost is outlined larger");
+        }
+        frame.highlight[0].batch = Some(7);
+        let mut lists = Lists::default();
+        lists.collect(&frame, DETAIL);
+        assert!(lists.outlined.is_empty(), "there is no such surface");
     }
 
     #[test]

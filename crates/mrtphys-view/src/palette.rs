@@ -115,7 +115,7 @@ impl Theme {
         let x = x.clamp(0.0, 1.0);
         match self {
             Theme::Light => ramp(0.95 * x),
-            Theme::Dark => ramp(0.2 + 0.8 * x),
+            Theme::Dark => ramp(0.3 + 0.7 * x),
         }
     }
 

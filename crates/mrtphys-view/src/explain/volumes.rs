@@ -49,7 +49,8 @@ impl Pen {
         let sine = radius / d;
         let middle = center + axis * (radius * sine);
         let (u, v) = (u, axis.cross(u));
-        let r = radius * (1.0 - sine * sine).sqrt();
+        // A polygon about the circle: one within it would be hidden by a ball that is drawn there.
+        let r = radius * (1.0 - sine * sine).sqrt() / (std::f64::consts::PI / CIRCLE as Real).cos();
         let at = |k: usize| {
             let angle = std::f64::consts::TAU * k as Real / CIRCLE as Real;
             middle + (u * angle.cos() + v * angle.sin()) * r
@@ -66,7 +67,7 @@ impl Pen {
         for i in spread(boxes.len(), self.affordable(BOX)) {
             drawn += 1;
             if let Some(block) = self.block(&boxes[i]) {
-                overlay.frame_of_block(&block, opaque(self.inks.aabb, 200), 0.9 * self.thin);
+                overlay.frame_of_block(&block, opaque(self.inks.aabb, 255), 0.9 * self.thin);
             }
         }
         Drawn { drawn, total: boxes.len() }
@@ -84,7 +85,7 @@ impl Pen {
             let Some(block) = self.block(&cell.bounds) else { continue };
             let color = legend.color(Real::from(cell.objects));
             overlay.blocks.push(Block { color: opaque(color, opacity), ..block });
-            overlay.frame_of_block(&block, opaque(color, 190), 0.8 * self.thin);
+            overlay.frame_of_block(&block, opaque(color, 230), 0.8 * self.thin);
         }
         (Drawn { drawn: chosen.len(), total: full.len() }, legend)
     }
@@ -101,7 +102,7 @@ impl Pen {
             let Some(block) = self.block(&cell.bounds) else { continue };
             let part = Real::from(cell.depth) / Real::from(deepest);
             let width = (2.0 - 1.2 * part) as f32 * self.thin;
-            overlay.frame_of_block(&block, opaque(legend.color(Real::from(cell.depth)), 220), width);
+            overlay.frame_of_block(&block, opaque(legend.color(Real::from(cell.depth)), 255), width);
         }
         (Drawn { drawn: order.len(), total: cells.len() }, legend)
     }
@@ -152,8 +153,9 @@ position = [-3, 0, 0]
         assert_eq!((o.lines.len(), o.bubbles.len()), (2 * CIRCLE, 1));
         for l in &o.lines[..CIRCLE] {
             let center = Vec3::new(1.0, 2.0, 0.0);
-            assert!(((l.from - center).length() - 1.5).abs() < 1e-12);
-            assert!((l.from - center).dot(l.from - pen().eye).abs() < 1e-12);
+            let touched = (l.from + l.to) * 0.5;
+            assert!(((touched - center).length() - 1.5).abs() < 1e-12);
+            assert!((touched - center).dot(touched - pen().eye).abs() < 1e-12);
         }
         let radius = 1.5f64.sqrt();
         assert!((o.bubbles[0].radius - radius).abs() < 1e-9 && o.bubbles[0].center == Vec3::X * -3.0);

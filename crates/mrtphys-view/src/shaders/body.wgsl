@@ -40,7 +40,7 @@ fn mark(on_body: vec4<f32>) -> f32 {
     let octant = side.x * side.y * side.z;
     let size = max(pixel.x, max(pixel.y, pixel.z));
     let seen = on_body.w * (1.0 - smoothstep(0.06, 0.2, size));
-    return 1.0 - seen * (0.34 * line + 0.055 * (1.0 + octant) * (1.0 - line));
+    return 1.0 - seen * (0.45 * line + 0.11 * (1.0 + octant) * (1.0 - line));
 }
 
 @vertex

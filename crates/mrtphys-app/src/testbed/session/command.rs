@@ -89,5 +89,5 @@ pub struct Studio<'a> {
     /// the world, its names and its scene
     pub loaded: &'a Loaded,
     /// the recording, oldest first
-    pub shots: &'a mut dyn Iterator<Item = Arc<Shot>>,
+    pub shots: &'a dyn Fn() -> Vec<Arc<Shot>>,
 }

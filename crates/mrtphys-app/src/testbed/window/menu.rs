@@ -21,8 +21,13 @@ pub struct Facts<'a> {
 /// Shows the bar.
 pub fn show(ui: &mut egui::Ui, desk: &mut Desk, preferences: &mut Preferences, facts: &Facts<'_>) {
     egui::MenuBar::new().ui(ui, |ui| {
-        let menus: [(&str, &str); 5] =
-            [("menu.file", "File"), ("menu.render", "Render"), ("menu.forces", "Forces"), ("menu.view", "View"), ("menu.help", "Help")];
+        let menus: [(&str, &str); 5] = [
+            ("menu.file", "File"),
+            ("menu.render", "Render"),
+            ("menu.forces", "Forces"),
+            ("menu.view", "View"),
+            ("menu.help", "Help"),
+        ];
         for (name, title) in menus {
             let shown = ui.menu_button(title, |ui| match title {
                 "File" => file(ui, desk, preferences),
@@ -64,7 +69,13 @@ fn file(ui: &mut egui::Ui, desk: &mut Desk, preferences: &mut Preferences) {
     ui.checkbox(&mut preferences.auto_reload, "Reload when the file changes")
         .on_hover_text("Looks at the file once a second. The camera stays");
     ui.separator();
-    item(ui, desk, "Save scene...", Action::SaveScene, "Write the present state as a scene, to be edited and opened again");
+    item(
+        ui,
+        desk,
+        "Save scene...",
+        Action::SaveScene,
+        "Write the present state as a scene, to be edited and opened again",
+    );
     item(ui, desk, "Save snapshot...", Action::SaveSnapshot, "Write the world bit for bit, to go on from later");
     item(ui, desk, "Load snapshot...", Action::LoadSnapshot, "Go on from a snapshot of the same scene");
     ui.separator();
@@ -149,9 +160,21 @@ fn view(ui: &mut egui::Ui, desk: &mut Desk, preferences: &mut Preferences, facts
     });
     ui.separator();
     item(ui, desk, "The scene's camera", Action::ResetCamera, "Look from where the scene says");
-    item(ui, desk, "Everything into the picture", Action::FitCamera, "Look from the same side, from where everything fits");
+    item(
+        ui,
+        desk,
+        "Everything into the picture",
+        Action::FitCamera,
+        "Look from the same side, from where everything fits",
+    );
     ui.separator();
-    item(ui, desk, if preferences.dark { "Light" } else { "Dark" }, Action::Theme, "Colors of the window and the picture");
+    item(
+        ui,
+        desk,
+        if preferences.dark { "Light" } else { "Dark" },
+        Action::Theme,
+        "Colors of the window and the picture",
+    );
     item(ui, desk, "Larger letters", Action::Scale(1), "Make everything on the panel larger");
     item(ui, desk, "Smaller letters", Action::Scale(-1), "Make everything on the panel smaller");
     item(ui, desk, "Letters as at first", Action::Scale(0), "The usual size");

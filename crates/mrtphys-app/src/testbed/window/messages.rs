@@ -44,7 +44,9 @@ impl Messages {
         }
         let mut dismissed = None;
         let corner = within.left_bottom() + egui::vec2(10.0, -10.0);
-        let area = egui::Area::new("messages".into()).order(egui::Order::Foreground).pivot(egui::Align2::LEFT_BOTTOM);
+        let area = egui::Area::new(egui::Id::unique("messages"))
+            .order(egui::Order::Foreground)
+            .pivot(egui::Align2::LEFT_BOTTOM);
         area.fixed_pos(corner).show(context, |ui| {
             ui.set_max_width((within.width() - 20.0).clamp(160.0, 460.0));
             for (i, (message, _)) in self.shown.iter().enumerate() {

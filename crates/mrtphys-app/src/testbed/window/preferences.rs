@@ -42,7 +42,8 @@ impl Preferences {
     pub fn save(&self) -> Result<(), String> {
         let Some(path) = file() else { return Ok(()) };
         if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).map_err(|e| format!("cannot make the folder '{}': {e}", folder.display()))?;
+            std::fs::create_dir_all(folder)
+                .map_err(|e| format!("cannot make the folder '{}': {e}", folder.display()))?;
         }
         let whole = Whole::check(&path).map_err(|e| e.to_string())?;
         whole.write(|to| to.write_all(self.text().as_bytes())).map_err(|e| e.to_string())
@@ -64,8 +65,7 @@ impl Preferences {
     fn text(&self) -> String {
         // A path that is not Unicode cannot stand in JSON, and is not remembered.
         let recent: Vec<&str> = self.recent.iter().filter_map(|p| p.to_str()).collect();
-        let value =
-            json!({"dark": self.dark, "scale": self.scale, "auto_reload": self.auto_reload, "recent": recent});
+        let value = json!({"dark": self.dark, "scale": self.scale, "auto_reload": self.auto_reload, "recent": recent});
         format!("{value:#}\n")
     }
 
@@ -75,6 +75,13 @@ impl Preferences {
         self.recent.retain(|p| *p != path);
         self.recent.insert(0, path);
         self.recent.truncate(MOST_RECENT);
+    }
+
+    /// A scene was opened, from a file or not.
+    pub fn recent_of(&mut self, path: Option<&Path>) {
+        if let Some(path) = path {
+            self.touch(path);
+        }
     }
 
     /// Larger or smaller letters by this many steps; 0: as usual.

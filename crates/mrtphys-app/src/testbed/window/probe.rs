@@ -1,4 +1,4 @@
-//! Where named controls are, so that a test can click them.
+//! Where named controls are and what the panel says, so that a test can click and read it.
 
 use eframe::egui;
 use std::collections::BTreeMap;
@@ -8,12 +8,13 @@ use std::collections::BTreeMap;
 pub struct Probes {
     wanted: bool,
     places: BTreeMap<String, egui::Rect>,
+    said: BTreeMap<String, String>,
 }
 
 impl Probes {
     /// That notes places only if they are wanted.
     pub fn new(wanted: bool) -> Probes {
-        Probes { wanted, places: BTreeMap::new() }
+        Probes { wanted, ..Probes::default() }
     }
 
     /// Notes where a control is, if it can be seen.
@@ -27,6 +28,19 @@ impl Probes {
     /// Forgets everything: a new picture begins.
     pub fn clear(&mut self) {
         self.places.clear();
+        self.said.clear();
+    }
+
+    /// Notes what the panel says somewhere.
+    pub fn say(&mut self, name: impl FnOnce() -> String, text: &str) {
+        if self.wanted {
+            self.said.insert(name(), text.to_string());
+        }
+    }
+
+    /// What the panel says, by name.
+    pub fn said(&self) -> &BTreeMap<String, String> {
+        &self.said
     }
 
     /// The controls by name, in points.

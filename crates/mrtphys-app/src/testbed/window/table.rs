@@ -1,11 +1,14 @@
 //! Tables of names and values in the panel.
 
+use super::probe::Probes;
 use eframe::egui;
 
 /// Two columns: names at the left, values at the right edge in letters of one width.
-pub fn rows(ui: &mut egui::Ui, rows: &[Row<'_>]) {
+/// Tests know them by the group's name and theirs.
+pub fn rows(ui: &mut egui::Ui, probes: &mut Probes, group: &str, rows: &[Row<'_>]) {
     for row in rows {
         line(ui, row);
+        probes.say(|| format!("{group}.{}", row.name), &row.value);
     }
 }
 

@@ -3,8 +3,8 @@
 use super::action::Action;
 use super::desk::Desk;
 use super::format::brief;
-use crate::testbed::session::{Command, RealTime, time_code};
 use super::pending::Pending;
+use crate::testbed::session::{Command, RealTime, time_code};
 use eframe::egui::{self, Color32, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 use std::time::Instant;
 
@@ -34,7 +34,14 @@ impl Transport {
         let (running, line, pace) = (report.running, report.timeline, report.pace);
         let code = time_code(side.numbers.frame, side.numbers.settings.fps);
         ui.horizontal_centered(|ui| {
-            button(ui, desk, "transport.restart", Icon::ToStart, "Begin again with the scene as it was loaded (R)", Action::Restart);
+            button(
+                ui,
+                desk,
+                "transport.restart",
+                Icon::ToStart,
+                "Begin again with the scene as it was loaded (R)",
+                Action::Restart,
+            );
             button(ui, desk, "transport.back", Icon::Back, "One frame back (Left)", Action::Back);
             let (icon, hint) =
                 if running { (Icon::Pause, "Stand still (Space)") } else { (Icon::Play, "Let time pass (Space)") };
@@ -48,8 +55,9 @@ impl Transport {
                 let hint = "Seconds of animation time for a second of real time (panel: Animation)";
                 fixed(ui, 66.0, &speed).on_hover_text(hint);
                 let hint = "Time code: hours h: minutes ': seconds \": frames f of animation time";
-                let code = fixed(ui, 136.0, &code).on_hover_text(hint);
-                desk.probes.mark("transport.code", &code);
+                let code_shown = fixed(ui, 136.0, &code).on_hover_text(hint);
+                desk.probes.mark("transport.code", &code_shown);
+                desk.probes.say(|| "transport.code".into(), &code);
                 let now = Instant::now();
                 let mut at = self.sought.shown(line.now, now);
                 let slider = scrub(ui, &mut at, line.first, line.last).on_hover_text(

@@ -40,35 +40,39 @@ impl Trouble {
         let title = if count == 1 { "Error in the scene".into() } else { format!("{count} errors in the scene") };
         let mut open = true;
         let mut dismissed = false;
-        egui::Window::new(title).id("trouble".into()).open(&mut open).default_width(620.0).pivot(egui::Align2::CENTER_CENTER).default_pos(
-            context.content_rect().center(),
-        ).show(context, |ui| {
-            ui.label(format!("{} cannot be opened. The scene before it goes on.", origin.name()));
-            ui.add_space(4.0);
-            let height = (0.5 * context.content_rect().height()).max(120.0);
-            egui::ScrollArea::both().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
-                for diagnostic in &found.list {
-                    show_one(ui, diagnostic);
-                }
-                if found.more > 0 {
-                    ui.label(format!("and {} more", found.more));
-                }
+        egui::Window::new(title)
+            .id(egui::Id::unique("trouble"))
+            .open(&mut open)
+            .default_width(620.0)
+            .pivot(egui::Align2::CENTER_CENTER)
+            .default_pos(context.content_rect().center())
+            .show(context, |ui| {
+                ui.label(format!("{} cannot be opened. The scene before it goes on.", origin.name()));
+                ui.add_space(4.0);
+                let height = (0.5 * context.content_rect().height()).max(120.0);
+                egui::ScrollArea::both().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
+                    for diagnostic in &found.list {
+                        show_one(ui, diagnostic);
+                    }
+                    if found.more > 0 {
+                        ui.label(format!("and {} more", found.more));
+                    }
+                });
+                ui.separator();
+                ui.horizontal(|ui| {
+                    let reload = ui.button("Reload").on_hover_text("Read the scene again (Ctrl+R)");
+                    desk.probes.mark("trouble.reload", &reload);
+                    if reload.clicked() {
+                        desk.actions.push(Action::Reload);
+                    }
+                    if ui.button("Copy").on_hover_text("Put the text on the clipboard").clicked() {
+                        ui.ctx().copy_text(found.to_string());
+                    }
+                    let dismiss = ui.button("Dismiss").on_hover_text("Close this window (Escape)");
+                    desk.probes.mark("trouble.dismiss", &dismiss);
+                    dismissed = dismiss.clicked();
+                });
             });
-            ui.separator();
-            ui.horizontal(|ui| {
-                let reload = ui.button("Reload").on_hover_text("Read the scene again (Ctrl+R)");
-                desk.probes.mark("trouble.reload", &reload);
-                if reload.clicked() {
-                    desk.actions.push(Action::Reload);
-                }
-                if ui.button("Copy").on_hover_text("Put the text on the clipboard").clicked() {
-                    ui.ctx().copy_text(found.to_string());
-                }
-                let dismiss = ui.button("Dismiss").on_hover_text("Close this window (Escape)");
-                desk.probes.mark("trouble.dismiss", &dismiss);
-                dismissed = dismiss.clicked();
-            });
-        });
         if !open || dismissed {
             self.found = None;
         }

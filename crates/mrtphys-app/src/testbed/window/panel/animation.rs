@@ -9,7 +9,7 @@ use crate::testbed::window::table::{Row, rows};
 use eframe::egui;
 use std::time::Instant;
 
-/// Limits of the sliders; more can be typed in.
+/// Limits of the sliders and of what can be typed in; a scene may say more.
 const FPS: std::ops::RangeInclusive<u32> = 1..=1000;
 const STEPS: std::ops::RangeInclusive<u32> = 1..=1000;
 /// Simulated seconds per real second.
@@ -40,16 +40,18 @@ impl Animation {
         let (numbers, pace, running) = (side.numbers.clone(), report.pace, report.running);
         let code = time_code(numbers.frame, numbers.settings.fps);
         buttons(ui, running, desk);
+        desk.probes.say(|| "animation.code".into(), &code);
         let code = egui::RichText::new(code).monospace().size(18.0);
         ui.vertical_centered(|ui| {
             ui.label(code).on_hover_text("Time code: hours h: minutes ': seconds \": frames f of animation time");
         });
-        rows(ui, &clock_rows(&numbers));
+        rows(ui, &mut desk.probes, "animation", &clock_rows(&numbers));
         ui.add_space(4.0);
         self.rates(ui, &numbers, desk);
         self.real_time(ui, &pace, desk);
         ui.add_space(4.0);
-        rows(ui, &pace_rows(desk.report(), &numbers));
+        let pace = pace_rows(desk.report(), &numbers);
+        rows(ui, &mut desk.probes, "animation", &pace);
     }
 
     fn rates(&mut self, ui: &mut egui::Ui, numbers: &Numbers, desk: &mut Desk) {

@@ -80,7 +80,7 @@ impl BroadPhase {
         }
         algorithm(ui, &numbers.settings, desk);
         ui.add_space(4.0);
-        counts(ui, &numbers);
+        counts(ui, &numbers, desk);
     }
 
     fn remember(&mut self, kind: BroadPhaseKind) {
@@ -208,7 +208,7 @@ fn counted(n: &Numbers) -> Vec<(&'static str, u64, u64, &'static str)> {
     lines.into_iter().chain(rare).collect()
 }
 
-fn counts(ui: &mut egui::Ui, numbers: &Numbers) {
+fn counts(ui: &mut egui::Ui, numbers: &Numbers, desk: &mut Desk) {
     let mono = |text: String| egui::RichText::new(text).monospace();
     egui::Grid::new("counts").num_columns(3).striped(true).min_col_width(64.0).show(ui, |ui| {
         ui.weak("");
@@ -220,7 +220,8 @@ fn counts(ui: &mut egui::Ui, numbers: &Numbers) {
         ui.end_row();
         for (name, step, total, hint) in counted(numbers) {
             ui.label(name).on_hover_text(hint);
-            for n in [step, total] {
+            for (n, what) in [(step, "step"), (total, "total")] {
+                desk.probes.say(|| format!("acceleration.{name}.{what}"), &count(n));
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     ui.label(mono(count(n))).on_hover_text(hint);
                 });

@@ -27,11 +27,11 @@ impl Energies {
     /// Shows it.
     pub fn show(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         let Some(side) = desk.report().sides.first() else { return };
-        let n = &side.numbers;
-        rows(ui, &energy_rows(n));
+        let (energies, entries) = (energy_rows(&side.numbers), ledger_rows(&side.numbers));
+        rows(ui, &mut desk.probes, "energies", &energies);
         ui.add_space(4.0);
         let ledger = egui::CollapsingHeader::new("Where it went").id_salt("ledger").default_open(false);
-        let shown = ledger.show(ui, |ui| rows(ui, &ledger_rows(n)));
+        let shown = ledger.show(ui, |ui| rows(ui, &mut desk.probes, "ledger", &entries));
         let header = shown.header_response.on_hover_text(
             "Every stage of a step measures the energy it changes and books it here: the entries and the energy at the start add up to the energy now",
         );

@@ -3,7 +3,8 @@
 use crate::testbed::window::ask::Inquiry;
 use crate::testbed::window::desk::Desk;
 use crate::testbed::window::plot::{Chart, Gas, Histogram, Trace, csv, curves, power_of_ten};
-use crate::testbed::window::quantity::{deviation, number, short};
+use crate::testbed::window::format::brief;
+use crate::testbed::window::quantity::{deviation, number};
 use eframe::egui::{self, Color32};
 use egui_plot::{Bar, BarChart, HoverPosition, Legend, Line, LineStyle, Plot, PlotPoints, VLine};
 use mrtphys_view::Stage;
@@ -45,38 +46,25 @@ const LOOK_EVERY: Duration = Duration::from_secs(1);
 #[derive(Default)]
 pub struct Plots {
     chart: Chart,
-    trace: Trace,
     /// the histogram that is shown, and of which report
     speeds: Option<(u64, Histogram)>,
     /// what is shown while the plots are held
     held: Option<Trace>,
-    /// the report that was taken last, and of which scene
-    taken: Option<(u64, u64)>,
+    /// the scene that it is about
+    opened: u64,
     gas: Inquiry<Option<Gas>>,
     asked: Option<(Arc<Stage>, Instant)>,
     reset: bool,
 }
 
 impl Plots {
-    /// Takes what is new; to be called for every picture, whether the plots are seen or not.
-    pub fn take(&mut self, desk: &Desk) {
-        let (number, opened) = (desk.report().number, desk.opened);
-        match self.taken {
-            Some((_, before)) if before != opened => {
-                self.trace.clear();
-                (self.held, self.speeds, self.asked) = (None, None, None);
-                self.gas.clear();
-            }
-            Some((before, _)) if before == number => return,
-            _ => {}
-        }
-        self.taken = Some((number, opened));
-        self.trace.extend(&desk.report().sides[0].samples);
-    }
-
     /// Shows them.
     pub fn show(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
-        self.take(desk);
+        if self.opened != desk.opened {
+            self.opened = desk.opened;
+            (self.held, self.speeds, self.asked) = (None, None, None);
+            self.gas.clear();
+        }
         ui.horizontal_wrapped(|ui| {
             for (chart, name, _, hint) in Chart::ALL {
                 let response = ui.selectable_value(&mut self.chart, chart, name).on_hover_text(hint);
@@ -86,7 +74,7 @@ impl Plots {
             let mut hold = self.held.is_some();
             let hint = "the plot stands still to be read; the simulation goes on";
             if ui.toggle_value(&mut hold, "Hold").on_hover_text(hint).changed() {
-                self.held = hold.then(|| self.trace.clone());
+                self.held = hold.then(|| desk.trace.clone());
             }
             if ui.button("Whole").on_hover_text("shows everything again after zooming (double click)").clicked() {
                 self.reset = true;
@@ -106,7 +94,7 @@ impl Plots {
             self.ask_for_gas(ui, desk);
         }
         let gas = self.gas.answer().copied().flatten();
-        let shown = self.held.as_ref().unwrap_or(&self.trace);
+        let shown = self.held.as_ref().unwrap_or(&desk.trace);
         let all = curves(chart, shown.moments(), gas.as_ref());
         let colors = if ui.visuals().dark_mode { &ON_DARK } else { &ON_LIGHT };
         let line_of = if ui.visuals().dark_mode { Color32::from_gray(120) } else { Color32::from_gray(150) };
@@ -159,7 +147,7 @@ impl Plots {
         let color = |i: usize| Color32::from_rgb(colors[i][0], colors[i][1], colors[i][2]);
         let (chi, bins) = h.chi_squared();
         if bins > 2 {
-            let text = format!("chi squared {} of {bins} bins", short(chi));
+            let text = format!("chi squared {} of {bins} bins", brief(chi));
             ui.weak(text).on_hover_text("about as large as the number of bins in equilibrium; much larger: no equilibrium yet");
         }
         let middle = |i: usize| (i as f64 + 0.5) * h.width;
@@ -179,7 +167,7 @@ impl Plots {
 
     /// Writes what was plotted beside where the program was started.
     fn write(&self, desk: &mut Desk) {
-        let text = csv(self.held.as_ref().unwrap_or(&self.trace).moments());
+        let text = csv(self.held.as_ref().unwrap_or(&desk.trace).moments());
         let path = free_path(&desk.name, |p| p.exists());
         match std::fs::write(&path, text) {
             Ok(()) => desk.say(format!("Plots written to {}", path.display())),
@@ -205,7 +193,7 @@ fn label(chart: Chart, at: &HoverPosition<'_>) -> Option<String> {
     let HoverPosition::NearDataPoint { plot_name, position, .. } = at else { return None };
     let value = match chart {
         Chart::Drift => deviation(10f64.powf(position.y)),
-        Chart::Speeds => return Some(format!("{plot_name}: {} bodies\nat {} m/s", short(position.y), short(position.x))),
+        Chart::Speeds => return Some(format!("{plot_name}: {} bodies\nat {} m/s", brief(position.y), brief(position.x))),
         _ => format!("{} {}", number(position.y), chart.unit()),
     };
     Some(format!("{plot_name}: {value}\nat {} s", number(position.x)))

@@ -14,7 +14,7 @@ impl Stages {
     /// Shows it.
     pub fn show(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         let Some(side) = desk.report().sides.first() else { return };
-        let n = &side.numbers;
+        let n = side.numbers.clone();
         let steps = n.settings.steps_per_frame.max(1);
         let parts = parts(&n.stages);
         if parts.is_empty() {
@@ -26,6 +26,8 @@ impl Stages {
         ui.add_space(2.0);
         rows(
             ui,
+            &mut desk.probes,
+            "stages",
             &[
                 Row::sum(
                     "step",
