@@ -7,7 +7,8 @@ use mrtphys::{BodyId, Vec3};
 use mrtphys_scene::Loaded;
 use std::sync::Arc;
 
-/// A change of the world: called for the world, and once more for its rival. An error is shown to the user.
+/// A change of the world. It is called for the world, for its rival, and again whenever a frame after it is restored: so it
+/// must do the same to the same world, and nothing else. An error is shown to the user.
 pub type Change = Box<dyn Fn(&mut Loaded) -> Result<(), String> + Send>;
 /// A look at the session from its thread.
 pub type Question = Box<dyn FnOnce(&Studio<'_>) + Send>;

@@ -24,10 +24,10 @@ const LOOKING_PART: u32 = 5;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Task {
     Stand,
-    /// to the end of a frame
-    Frame,
-    /// one physical step
-    Step,
+    /// to the end of a frame, and so many more
+    Frame(u32),
+    /// so many physical steps
+    Step(u32),
     Run,
 }
 
@@ -76,7 +76,11 @@ pub struct Core {
     look_cost: Duration,
     since_look: Duration,
     stride: u64,
+    /// a deed was done at this frame, and its picture was not made again yet
+    edited: bool,
+    /// whether the rival's state was the same when that was last asked, and whether anything happened since
     agrees: Option<bool>,
+    pub(super) is_unasked: bool,
 }
 
 impl Core {
@@ -113,7 +117,9 @@ impl Core {
             look_cost: Duration::ZERO,
             since_look: Duration::ZERO,
             stride: 1,
+            edited: false,
             agrees: None,
+            is_unasked: true,
         }
     }
 
@@ -154,11 +160,9 @@ impl Core {
             | Command::Wish(_) => false,
             Command::Seek(_) | Command::Back => !self.queue.is_empty(),
             Command::Rival(_) => self.must_wait() || self.is_inside(),
-            Command::Fps(_)
-            | Command::StepsPerFrame(_)
-            | Command::Edit { .. }
-            | Command::Hold(_)
-            | Command::Ask(_) => self.must_wait(),
+            Command::Fps(_) | Command::StepsPerFrame(_) | Command::Edit { .. } | Command::Hold(_) | Command::Ask(_) => {
+                self.must_wait()
+            }
         };
         if waits { self.queue.push_back(command) } else { self.act(command) }
     }
@@ -171,8 +175,8 @@ impl Core {
         let now = self.now();
         match command {
             Command::Go(on) => self.go(on),
-            Command::Frame => self.begin_task(Task::Frame),
-            Command::Step => self.begin_task(Task::Step),
+            Command::Frame => self.begin_task(true),
+            Command::Step => self.begin_task(false),
             Command::Back => {
                 let tick = self.restore.as_ref().map_or(self.position().tick, |r| r.target);
                 let inside = self.restore.is_none() && self.position().done > 0;
@@ -220,7 +224,14 @@ impl Core {
         self.task = Task::Stand;
     }
 
-    fn begin_task(&mut self, task: Task) {
+    /// One more frame or step, beside those that were asked for already and are not made yet.
+    fn begin_task(&mut self, frame: bool) {
+        let task = match (self.task, frame) {
+            (Task::Frame(n), true) => Task::Frame(n + 1),
+            (Task::Step(n), false) => Task::Step(n + 1),
+            (_, true) => Task::Frame(0),
+            (_, false) => Task::Step(1),
+        };
         self.stand();
         self.trouble = None;
         self.task = task;
@@ -273,8 +284,8 @@ impl Core {
     }
 
     fn answer(&mut self, question: Question) {
-        let mut shots = self.tape.shots().cloned();
-        question(&Studio { loaded: &self.lanes[0].machine.loaded, shots: &mut shots });
+        let shots = || self.tape.shots().cloned().collect();
+        question(&Studio { loaded: &self.lanes[0].machine.loaded, shots: &shots });
     }
 
     /// Changes the worlds, here and now.
@@ -304,7 +315,8 @@ impl Core {
             lane.is_seen = false;
             lane.restage |= structural;
         }
-        self.agrees = None;
+        self.is_unasked = true;
+        self.edited = !inside;
         let fps = self.loaded().world.settings().fps;
         self.pace.set_fps(fps, self.now());
         if self.position().tick > here.tick {
@@ -325,7 +337,7 @@ impl Core {
     pub(super) fn fork(&mut self) {
         self.lanes.truncate(1);
         self.tape.end_rival();
-        self.agrees = None;
+        (self.agrees, self.is_unasked) = (None, true);
         let Some(settings) = &self.rival else { return };
         match self.lanes[0].machine.rival(settings) {
             Ok(mut machine) => {
@@ -346,7 +358,7 @@ impl Core {
             self.restore_on();
             return Next::Now;
         }
-        if self.is_inside() && (!matches!(self.task, Task::Stand | Task::Step) || !self.queue.is_empty()) {
+        if self.is_inside() && (!matches!(self.task, Task::Stand | Task::Step(_)) || !self.queue.is_empty()) {
             self.step_one();
             return Next::Now;
         }
@@ -357,8 +369,8 @@ impl Core {
         }
         match self.task {
             Task::Stand => return Next::Never,
-            Task::Step => self.step_all(),
-            Task::Frame => self.begin(1),
+            Task::Step(n) => self.step_all(n),
+            Task::Frame(_) => self.begin(1),
             Task::Run => match self.pace.due(self.now()) {
                 Due::Now(merged) => self.begin(merged),
                 Due::At(then) => return Next::At(then),
@@ -370,6 +382,7 @@ impl Core {
     /// Begins a frame; what came after in the recording is replaced.
     fn begin(&mut self, merged: u32) {
         let here = self.position();
+        self.look_again();
         self.tape.cut(here);
         self.tape.note_merged(here.tick, merged);
         self.lanes.iter_mut().for_each(|lane| lane.machine.begin(merged));
@@ -392,7 +405,7 @@ impl Core {
     /// Whether it went well.
     fn step_lane(&mut self, i: usize) -> bool {
         let result = self.lanes[i].step(&*self.clock);
-        self.agrees = None;
+        self.is_unasked = true;
         match result {
             Ok(_) => true,
             Err(e) => {
@@ -405,11 +418,11 @@ impl Core {
     }
 
     /// One physical step of every world.
-    fn step_all(&mut self) {
+    fn step_all(&mut self, count: u32) {
         if !self.is_inside() {
             self.begin(1);
         }
-        self.task = Task::Stand;
+        self.task = if count > 1 { Task::Step(count - 1) } else { Task::Stand };
         self.news = News::Answer;
         self.pace.jump(self.now());
         let went_well = (0..self.lanes.len()).all(|i| !self.lanes[i].machine.is_inside() || self.step_lane(i));
@@ -431,14 +444,26 @@ impl Core {
         let cost: Duration = self.lanes.iter().map(|lane| lane.frame_cost).sum();
         self.since_look += cost;
         let off = self.pace.report().real_time == RealTime::Off;
-        if !running || !off || self.since_look >= self.look_cost * LOOKING_PART {
+        let restage = self.lanes.iter().any(|lane| lane.restage);
+        if !running || !off || restage || self.since_look >= self.look_cost * LOOKING_PART {
             self.look(running && !self.pace.report().blend.is_zero());
         }
         self.tape.keep(self.lanes.iter_mut().map(|lane| &mut lane.machine), cost, &*self.clock);
-        if self.task == Task::Frame {
-            self.task = Task::Stand;
+        match self.task {
+            Task::Frame(0) => self.task = Task::Stand,
+            Task::Frame(n) => self.task = Task::Frame(n - 1),
+            Task::Stand | Task::Step(_) | Task::Run => {}
         }
         self.news = if running { self.news.max(News::Frame) } else { News::Answer };
+    }
+
+    /// Makes the picture of a frame again whose bodies were changed, before it is left.
+    pub(super) fn look_again(&mut self) {
+        let worth_it = self.task != Task::Run || self.lanes.iter().any(|lane| lane.restage);
+        if self.edited && worth_it && !self.is_inside() {
+            self.look(false);
+        }
+        self.edited = false;
     }
 
     /// Looks at the worlds, and records what is seen if it is a whole frame.
@@ -453,6 +478,7 @@ impl Core {
         }
         self.look_cost = self.now().saturating_duration_since(start);
         self.since_look = Duration::ZERO;
+        self.edited = false;
     }
 
     /// Tells how things are.
@@ -465,8 +491,9 @@ impl Core {
                 self.pace.jump(self.now());
             }
         }
-        if may_look && !inside && self.agrees.is_none() && self.lanes.len() > 1 {
+        if may_look && !inside && self.is_unasked && self.lanes.len() > 1 {
             let hash = |lane: &Lane| lane.machine.world().state_hash();
+            self.is_unasked = false;
             self.agrees = Some(hash(&self.lanes[0]) == hash(&self.lanes[1]));
         }
         let trail = self.trail();

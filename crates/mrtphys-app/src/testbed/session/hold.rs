@@ -17,7 +17,7 @@ use mrtphys_scene::Loaded;
 /// The spring's angular frequency, in units of the frame rate.
 const STIFFNESS: Real = 0.4;
 /// How fast turning dies down, in units of the spring's frequency: slow enough for a body to swing about the hand once.
-const SPIN_DAMPING: Real = 0.3;
+const SPIN_DAMPING: Real = 0.5;
 /// The hand moves a body by at most this part of its diameter in a step: more, and it could pass through another unseen
 /// (requirement 4).
 const LARGEST_STEP: Real = 0.25;
@@ -89,9 +89,11 @@ impl Hand {
             return Some(before);
         }
         let w = STIFFNESS * Real::from(world.settings().fps);
+        // Turning dies down about the grip point, not about the centre: the point's velocity stays what it is.
         let rest = 1.0 / (1.0 + SPIN_DAMPING * w * dt);
+        let u = body.velocity + body.angular_velocity.cross(arm);
         let _ = world.set_angular_momentum(body.id, body.angular_momentum * rest);
-        let u = body.velocity + (body.angular_velocity * rest).cross(arm);
+        let _ = world.set_velocity(body.id, u - (body.angular_velocity * rest).cross(arm));
         let grow = 1.0 + w * dt;
         let wanted = shortened((u - error * (dt * w * w)) / (grow * grow), reach / dt);
         if let Some(per_mass) = solve(&point_mobility(&body, arm), wanted - u) {
@@ -121,4 +123,3 @@ fn solve(m: &Mat3, b: Vec3) -> Option<Vec3> {
     let d = x.dot(y.cross(z));
     (d.is_normal()).then(|| Vec3::new(b.dot(y.cross(z)), x.dot(b.cross(z)), x.dot(y.cross(b))) / d)
 }
-

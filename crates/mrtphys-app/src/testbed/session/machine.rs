@@ -251,12 +251,21 @@ impl Still {
         let Machine { loaded, frame, tick, done, plan, hand, own, rest } = machine;
         let rest = rest.get_or_insert_with(|| Arc::new((loaded.names.clone(), loaded.scene.clone()))).clone();
         let world = loaded.world.clone();
-        Still { world, rest, frame: *frame, tick: *tick, done: *done, plan: *plan, hand: hand.clone(), own: own.clone() }
+        Still {
+            world,
+            rest,
+            frame: *frame,
+            tick: *tick,
+            done: *done,
+            plan: *plan,
+            hand: hand.clone(),
+            own: own.clone(),
+        }
     }
 
     /// A machine that goes on from here.
     pub fn awake(&self) -> Machine {
-        let (names, scene) = (&*self.rest).clone();
+        let (names, scene) = (*self.rest).clone();
         Machine {
             loaded: Loaded { world: self.world.clone(), names, scene },
             frame: self.frame,

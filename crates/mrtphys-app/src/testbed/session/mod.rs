@@ -1,6 +1,9 @@
 //! A world that lives on a thread of its own: commands go in, reports come out. Drawing never waits for physics, nor
 //! physics for drawing.
 
+// The contract is wider than what the window happens to use.
+#![allow(dead_code, unused_imports)]
+
 // The contract.
 mod command;
 mod report;
@@ -18,6 +21,8 @@ mod tape;
 mod core;
 mod restore;
 mod worker;
+#[cfg(test)]
+mod tests;
 
 pub use command::{Command, Grip, Studio, Wish};
 pub use pace::RealTime;

@@ -14,9 +14,12 @@ pub struct Restore {
 impl Core {
     /// Goes to a frame: its picture at once, its state as soon as it is computed again.
     pub(super) fn seek(&mut self, tick: u64) {
+        self.stand();
+        if self.restore.is_none() {
+            self.look_again();
+        }
         let (first, last) = self.tape.range();
         let target = tick.clamp(first, last);
-        self.stand();
         let now = self.now();
         self.pace.jump(now);
         if self.restore.is_none() && self.position() == (Position { tick: target, done: 0 }) && !self.is_inside() {
@@ -111,6 +114,7 @@ impl Core {
             lane.is_seen = i == 0 && recorded;
             lane.restage = i > 0;
         }
+        self.is_unasked = true;
         self.listen();
         self.news = News::Answer;
     }
