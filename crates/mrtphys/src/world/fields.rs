@@ -23,7 +23,11 @@ impl FieldTable {
     fn push(&mut self, flow: bool) -> u32 {
         let number = self.next;
         self.next += 1;
-        if flow { self.flows.push(number) } else { self.forces.push(number) }
+        if flow {
+            self.flows.push(number)
+        } else {
+            self.forces.push(number)
+        }
         number
     }
 }

@@ -93,7 +93,8 @@ pub fn step_time(numbers: &Numbers) -> f64 {
 pub fn legends(ui: &Ui, rect: Rect, legends: &[Legend]) {
     let mut bottom = rect.bottom() - EDGE;
     for legend in legends {
-        bottom -= if legend.samples.is_empty() { kinds(ui, rect, bottom, legend) } else { ramp(ui, rect, bottom, legend) };
+        bottom -=
+            if legend.samples.is_empty() { kinds(ui, rect, bottom, legend) } else { ramp(ui, rect, bottom, legend) };
         bottom -= 6.0;
     }
 }
@@ -169,7 +170,8 @@ pub fn tools(ui: &mut Ui, rect: Rect, desk: &mut Desk) {
         }
         let hint = "the hand: a left drag on a body pulls it with a spring; let go to throw it (H, or hold Alt)";
         let on = desk.seeing.hand;
-        let hand = ui.add(egui::Button::new("Hand").selected(on).fill(if on { ui.visuals().selection.bg_fill } else { fill }));
+        let hand =
+            ui.add(egui::Button::new("Hand").selected(on).fill(if on { ui.visuals().selection.bg_fill } else { fill }));
         desk.probes.mark("hand", &hand);
         if hand.on_hover_text(hint).clicked() {
             desk.seeing.hand ^= true;

@@ -6,7 +6,7 @@ use eframe::egui;
 use eframe::egui_wgpu::RenderState;
 use mrtphys::def::BroadPhaseKind;
 use mrtphys::{BodyId, Vec3};
-use mrtphys_view::{Camera, Canvas, Dress, Drawn, Frame, Legend, Look, Pen, Poses, Renderer, Scale, ViewError};
+use mrtphys_view::{Camera, Canvas, Drawn, Dress, Frame, Legend, Look, Pen, Poses, Renderer, Scale, ViewError};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -87,11 +87,6 @@ impl Picture {
     /// The texture, if there is a picture.
     pub fn texture(&self) -> Option<egui::TextureId> {
         self.shown.as_ref().map(|s| s.id)
-    }
-
-    /// Size of the picture \[pixels\].
-    pub fn size(&self) -> Option<(u32, u32)> {
-        self.shown.as_ref().map(|s| s.canvas.size())
     }
 
     /// Whether the picture would be another one.
@@ -203,8 +198,7 @@ impl Picture {
         let mut note = |layer: Layer, d: Drawn| drawn.push((layer, d));
         if sight.has(Layer::Cells) {
             let is_tree = matches!(side.numbers.settings.broad_phase, BroadPhaseKind::AdaptiveTree { .. });
-            let (d, legend) =
-                if is_tree { pen.tree(overlay, &extras.cells) } else { pen.grid(overlay, &extras.cells) };
+            let (d, legend) = if is_tree { pen.tree(overlay, &extras.cells) } else { pen.grid(overlay, &extras.cells) };
             note(Layer::Cells, d);
             legends.push(legend);
         }

@@ -38,11 +38,6 @@ pub fn with_unit(x: f64, unit: &str) -> String {
     if unit.is_empty() { number(x) } else { format!("{} {unit}", number(x)) }
 }
 
-/// The three components.
-pub fn vector(v: Vec3) -> String {
-    format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
-}
-
 /// A relative deviation such as E/E0 - 1, always as a power of ten: 2.2e-15.
 pub fn deviation(x: f64) -> String {
     if x == 0.0 || !x.is_finite() { number(x) } else { format!("{x:.1e}") }
@@ -70,9 +65,7 @@ fn end_of_number(text: &str) -> usize {
     let bytes = text.as_bytes();
     let belongs = |i: usize| match bytes[i] {
         b'0'..=b'9' | b'+' | b'-' | b'.' | b'/' | b' ' => true,
-        b'e' | b'E' => {
-            i > 0 && bytes[i - 1].is_ascii_digit() || i > 0 && bytes[i - 1] == b'.'
-        }
+        b'e' | b'E' => i > 0 && bytes[i - 1].is_ascii_digit() || i > 0 && bytes[i - 1] == b'.',
         _ => false,
     };
     let end = (0..bytes.len()).find(|&i| !belongs(i)).unwrap_or(bytes.len());
@@ -194,7 +187,6 @@ mod tests {
         ] {
             assert_eq!(number(x), text);
         }
-        assert_eq!(vector(Vec3::new(1.0, -0.25, 3e7)), "(1, -0.25, 3e7)");
         assert_eq!(with_unit(2.0, "m/s"), "2 m/s");
     }
 
@@ -229,7 +221,17 @@ mod tests {
             let read = parse(text, unit).unwrap_or(f64::NAN);
             assert!((read - value).abs() <= 1e-15 * value.abs(), "{text}: {read}");
         }
-        for (text, unit) in [("", "m"), ("m", "m"), ("3 s", "m"), ("1/0", "m"), ("1 mm3", "m3"), ("1e999", "m"), ("1e m", "s"), ("--1", "m"), ("NaN", "m")] {
+        for (text, unit) in [
+            ("", "m"),
+            ("m", "m"),
+            ("3 s", "m"),
+            ("1/0", "m"),
+            ("1 mm3", "m3"),
+            ("1e999", "m"),
+            ("1e m", "s"),
+            ("--1", "m"),
+            ("NaN", "m"),
+        ] {
             assert_eq!(parse(text, unit), None, "{text}");
         }
     }

@@ -28,14 +28,26 @@ pub enum Layer {
 impl Layer {
     /// All of them: name, and what it is.
     pub const ALL: [(Layer, &'static str, &'static str); 8] = [
-        (Layer::Contacts, "Contacts and normals", "where bodies touch in the last step, with the normal from the first body to the second"),
-        (Layer::Impulses, "Impulses", "impulses of the latest impacts; the length goes with the square root of the impulse"),
+        (
+            Layer::Contacts,
+            "Contacts and normals",
+            "where bodies touch in the last step, with the normal from the first body to the second",
+        ),
+        (
+            Layer::Impulses,
+            "Impulses",
+            "impulses of the latest impacts; the length goes with the square root of the impulse",
+        ),
         (Layer::Velocities, "Velocities", "velocities of the centres of mass"),
         (Layer::Spins, "Angular velocities", "axes of rotation, with an arc in the sense of rotation"),
         (Layer::Trails, "Trails", "where bodies have been, from the recording"),
         (Layer::Balls, "Bounding spheres", "the spheres that are tested first"),
         (Layer::Boxes, "Bounding boxes", "the axis-parallel boxes that the grids use"),
-        (Layer::Cells, "Cells", "cells of the grid, tinted by their number of objects, or of the tree, tinted by their depth"),
+        (
+            Layer::Cells,
+            "Cells",
+            "cells of the grid, tinted by their number of objects, or of the tree, tinted by their depth",
+        ),
     ];
 
     fn bit(self) -> u8 {
@@ -141,7 +153,11 @@ mod tests {
             assert_eq!(on, [layer]);
             let mut wish = Wish::default();
             seeing.wish(&mut wish);
-            assert_eq!(wish == Wish::default(), layer == Layer::Balls, "{layer:?}: only bounding spheres are known already");
+            assert_eq!(
+                wish == Wish::default(),
+                layer == Layer::Balls,
+                "{layer:?}: only bounding spheres are known already"
+            );
             seeing.set(layer, false);
             assert_eq!(seeing, Sight::default());
         }

@@ -325,7 +325,8 @@ impl Viewport {
                 continue;
             }
             let seeing = (i == 0).then_some(&mut desk.seeing);
-            let drawn = self.pictures[i].draw(&mut self.renderer, render, (report, &report.sides[i], part), &view, seeing);
+            let drawn =
+                self.pictures[i].draw(&mut self.renderer, render, (report, &report.sides[i], part), &view, seeing);
             match drawn {
                 Ok(time) => (taken, self.trouble) = (time.map(|t| t + taken.unwrap_or_default()), None),
                 Err(e) => self.trouble = Some(e.to_string()),

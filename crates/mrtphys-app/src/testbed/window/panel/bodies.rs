@@ -96,7 +96,8 @@ impl Bodies {
             self.matching.1 = usize::MAX;
         }
         let field = egui::TextEdit::singleline(&mut self.filter).hint_text("name, kind or 'fixed'");
-        ui.add(field.desired_width(f32::INFINITY)).on_hover_text("shows only bodies whose name or kind has these words");
+        ui.add(field.desired_width(f32::INFINITY))
+            .on_hover_text("shows only bodies whose name or kind has these words");
         self.list(ui, desk);
         ui.add_space(4.0);
         egui::CollapsingHeader::new("Add a body").default_open(false).show(ui, |ui| self.form.show(ui, desk));
@@ -144,7 +145,8 @@ impl Bodies {
 /// What the list shows.
 fn told(matching: usize, listed: usize, all: usize) -> String {
     let bodies = |n: usize| format!("{} bod{}", count(n as u64), if n == 1 { "y" } else { "ies" });
-    let mut text = if matching == listed { bodies(listed) } else { format!("{} of {}", count(matching as u64), bodies(listed)) };
+    let mut text =
+        if matching == listed { bodies(listed) } else { format!("{} of {}", count(matching as u64), bodies(listed)) };
     if listed < all {
         text += &format!(" (the first of {})", count(all as u64));
     }
@@ -199,7 +201,8 @@ impl Form {
             ui.horizontal(|ui| {
                 ui.selectable_value(&mut self.place, Where::LookPoint, "look point")
                     .on_hover_text("at the point in the middle of the picture that the camera turns about");
-                ui.selectable_value(&mut self.place, Where::Position, "position").on_hover_text("at a place given here");
+                ui.selectable_value(&mut self.place, Where::Position, "position")
+                    .on_hover_text("at a place given here");
             });
             ui.end_row();
             if self.place == Where::Position {
@@ -231,7 +234,8 @@ impl Form {
                     self.changed = Some(desk.report().number);
                     desk.session.edit(true, move |loaded| making::add(loaded, &pattern, near).map(drop));
                 }
-                let hint = "shoots the body from the eye along the middle line of sight, from where that enters the walls (B)";
+                let hint =
+                    "shoots the body from the eye along the middle line of sight, from where that enters the walls (B)";
                 if ui.button("Throw from the eye").on_hover_text(hint).clicked() {
                     self.changed = Some(desk.report().number);
                     let speed = self.speed.unwrap_or(short_speed(camera.distance()));
@@ -341,7 +345,8 @@ mod tests {
 
     #[test]
     fn bodies_are_found_by_words_of_name_and_kind() {
-        let rows = [row("Ball 1", "sphere", false), row("ball 2", "tetrahedron", false), row("floor", "polyhedron", true)];
+        let rows =
+            [row("Ball 1", "sphere", false), row("ball 2", "tetrahedron", false), row("floor", "polyhedron", true)];
         assert_eq!(found(&rows, ""), [0, 1, 2]);
         assert_eq!(found(&rows, "BALL"), [0, 1]);
         assert_eq!(found(&rows, "ball sph"), [0]);

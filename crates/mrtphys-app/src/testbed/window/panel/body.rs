@@ -57,12 +57,7 @@ impl Body {
     }
 
     /// Changes the world, and remembers when.
-    fn edit(
-        &mut self,
-        desk: &Desk,
-        looks: bool,
-        change: impl Fn(&mut World) -> mrtphys::Result<()> + Send + 'static,
-    ) {
+    fn edit(&mut self, desk: &Desk, looks: bool, change: impl Fn(&mut World) -> mrtphys::Result<()> + Send + 'static) {
         self.changed = Some(desk.report().number);
         desk.session.edit(looks, move |loaded| change(&mut loaded.world).map_err(|e| e.to_string()));
     }
@@ -236,7 +231,8 @@ impl Body {
                 _ => body.mass * Scale::of(body).speed,
             };
             let axes = desk.camera.axes();
-            if ui.button("Push").on_hover_text("an impulse through the centre of mass, away from the viewer").clicked() {
+            if ui.button("Push").on_hover_text("an impulse through the centre of mass, away from the viewer").clicked()
+            {
                 self.push = Some((id, impulse));
                 self.edit(desk, false, move |w| {
                     let center = w.body(id)?.position;

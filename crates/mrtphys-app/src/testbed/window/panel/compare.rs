@@ -115,7 +115,11 @@ impl Compare {
             row("time per step", medians, "computing time of a physical step, the median of the latest frames");
             let tests = [a, b].map(|n| count(n.counters.sphere_tests));
             row("sphere tests", tests, "bounding-sphere tests of the last step");
-            row("detect calls", [a, b].map(|n| count(n.counters.detect_calls)), "calls of pair routines in the last step");
+            row(
+                "detect calls",
+                [a, b].map(|n| count(n.counters.detect_calls)),
+                "calls of pair routines in the last step",
+            );
             row("contacts", [a, b].map(|n| count(n.counters.contacts)), "contacts of the last step");
             row("impacts", [a, b].map(|n| count(n.totals.impacts)), "impacts since the start");
             row("E/E0 - 1", [a, b].map(drift_of), "relative change of the total energy since the start");
@@ -184,7 +188,9 @@ fn parameters(ui: &mut egui::Ui, kind: &mut BroadPhaseKind) {
                 ui.checkbox(&mut own, "").on_hover_text("a number of your own");
                 *resolution = own.then(|| resolution.unwrap_or(16));
                 match resolution {
-                    Some(n) => drop(ui.add(egui::DragValue::new(n).range(1..=1024)).on_hover_text("cells along each axis")),
+                    Some(n) => {
+                        drop(ui.add(egui::DragValue::new(n).range(1..=1024)).on_hover_text("cells along each axis"))
+                    }
                     None => drop(ui.weak("automatic")),
                 }
             });
@@ -193,7 +199,8 @@ fn parameters(ui: &mut egui::Ui, kind: &mut BroadPhaseKind) {
         BroadPhaseKind::AdaptiveTree { objects_per_cell, max_depth } => {
             ui.label("Objects per cell").on_hover_text("a cell with more is split");
             ui.horizontal(|ui| {
-                ui.add(egui::DragValue::new(objects_per_cell).range(1..=1_000_000)).on_hover_text("a cell with more is split");
+                ui.add(egui::DragValue::new(objects_per_cell).range(1..=1_000_000))
+                    .on_hover_text("a cell with more is split");
                 ui.label("depth");
                 ui.add(egui::DragValue::new(max_depth).range(0..=48)).on_hover_text("deepest level");
             });

@@ -196,7 +196,11 @@ mod tests {
 
     #[test]
     fn gravity_is_set_turned_and_switched_off() {
-        for text in ["", "[[force_field]]\nkind = \"earth-gravity\"\n", "[[force_field]]\nkind = \"uniform\"\nacceleration = [1, 0, 0]\n"] {
+        for text in [
+            "",
+            "[[force_field]]\nkind = \"earth-gravity\"\n",
+            "[[force_field]]\nkind = \"uniform\"\nacceleration = [1, 0, 0]\n",
+        ] {
             let mut l = loaded(text);
             set_gravity(&mut l, Vec3::new(0.0, -1.62, 0.0)).unwrap();
             assert_eq!(l.world.forces().len(), 1);
@@ -232,7 +236,10 @@ mod tests {
         let again = Scene::from_text("again", &text).unwrap().build().unwrap();
         assert_eq!(all(&again).iter().map(|p| p.field).collect::<Vec<_>>(), choices);
         set(&mut l, 0, Field::Force(ForceKind::Uniform { acceleration: Vec3::Z })).unwrap();
-        assert!(set(&mut l, 1, Field::Force(ForceKind::Point { position: Vec3::ZERO, strength: 1.0, exponent: 99 })).is_err());
+        assert!(
+            set(&mut l, 1, Field::Force(ForceKind::Point { position: Vec3::ZERO, strength: 1.0, exponent: 99 }))
+                .is_err()
+        );
         assert_eq!(all(&l)[1].field, choices[1], "what is refused changes nothing");
         for placed in all(&l).into_iter().rev() {
             remove(&mut l, placed.number, &placed.field).unwrap();

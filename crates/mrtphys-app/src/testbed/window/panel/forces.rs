@@ -147,7 +147,9 @@ impl Forces {
     }
 
     fn fields(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
-        ui.label("Fields").on_hover_text("force fields accelerate bodies; flow fields move the medium, which takes bodies along where it is viscous");
+        ui.label("Fields").on_hover_text(
+            "force fields accelerate bodies; flow fields move the medium, which takes bodies along where it is viscous",
+        );
         let list = self.list.answer().cloned().unwrap_or_default();
         if list.is_empty() {
             ui.weak("none");
@@ -201,7 +203,13 @@ fn parameters(ui: &mut egui::Ui, field: &Field, size: Real) -> Option<Field> {
             vector(ui, "acceleration", &Entry::any("m/s2", 1.0, "the same everywhere"), acceleration, &mut changed);
         }
         Field::Force(ForceKind::Point { position, strength, exponent }) => {
-            vector(ui, "point", &Entry::any("m", size * 0.1, "where it pulls to; relative to its carrier, where it has one"), position, &mut changed);
+            vector(
+                ui,
+                "point",
+                &Entry::any("m", size * 0.1, "where it pulls to; relative to its carrier, where it has one"),
+                position,
+                &mut changed,
+            );
             let hint = "strength / r^exponent is the acceleration; negative: it repels";
             let unit = format!("m^{}/s2", *exponent + 1);
             scalar(ui, "strength", &Entry::any(&unit, *strength, hint), strength, &mut changed);
@@ -213,7 +221,13 @@ fn parameters(ui: &mut egui::Ui, field: &Field, size: Real) -> Option<Field> {
         Field::Force(ForceKind::Vortex { point, axis, strength }) => {
             vector(ui, "point", &Entry::any("m", size * 0.1, "a point of the axis"), point, &mut changed);
             vector(ui, "axis", &Entry::any("", 1.0, "direction of the axis; any length"), axis, &mut changed);
-            scalar(ui, "strength", &Entry::any("m2/s2", *strength, "acceleration times distance"), strength, &mut changed);
+            scalar(
+                ui,
+                "strength",
+                &Entry::any("m2/s2", *strength, "acceleration times distance"),
+                strength,
+                &mut changed,
+            );
         }
         Field::Flow(FlowKind::Uniform { velocity }) => {
             vector(ui, "velocity", &Entry::any("m/s", size, "velocity of the medium"), velocity, &mut changed);

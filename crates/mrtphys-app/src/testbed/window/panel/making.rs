@@ -62,7 +62,14 @@ impl Pattern {
     /// A sphere of this radius \[m\] and 1 kg.
     pub fn sphere(radius: Real) -> Pattern {
         let edges = Vec3::splat(radius);
-        Pattern { kind: Kind::Sphere, radius, edges, mass: MassDesc::Value(1.0), velocity: Vec3::ZERO, spin: Vec3::ZERO }
+        Pattern {
+            kind: Kind::Sphere,
+            radius,
+            edges,
+            mass: MassDesc::Value(1.0),
+            velocity: Vec3::ZERO,
+            spin: Vec3::ZERO,
+        }
     }
 
     /// Its shape in the scene language.
@@ -91,7 +98,8 @@ impl Pattern {
     /// What is wrong with it, if anything.
     pub fn complaint(&self) -> Option<&'static str> {
         let good = |x: Real| x > 0.0 && x.is_finite();
-        let sizes = if self.kind == Kind::Box { self.edges.to_array().into_iter().all(good) } else { good(self.radius) };
+        let sizes =
+            if self.kind == Kind::Box { self.edges.to_array().into_iter().all(good) } else { good(self.radius) };
         if !sizes {
             return Some("sizes must be positive");
         }
@@ -352,7 +360,10 @@ mod tests {
             let ball = body.shape.bounding_sphere();
             assert!(ball.center.length() + ball.radius <= pattern.reach() * (1.0 + 1e-12), "{name}");
         }
-        assert_eq!(add(&mut loaded, &Pattern::sphere(0.1), Vec3::splat(3.0)).map(|id| loaded.names.body_name(id)), Ok(Some("sphere 2".into())));
+        assert_eq!(
+            add(&mut loaded, &Pattern::sphere(0.1), Vec3::splat(3.0)).map(|id| loaded.names.body_name(id)),
+            Ok(Some("sphere 2".into()))
+        );
         assert!(loaded.world.overlaps().is_empty(), "each has a place of its own");
     }
 

@@ -28,7 +28,8 @@ impl Overlays {
                 let drawn = desk.seeing.drawn.iter().find(|(l, _)| *l == layer).map(|(_, d)| *d);
                 if let Some(text) = drawn.filter(|_| on).and_then(left_out) {
                     let text = egui::RichText::new(text).small().color(ui.visuals().warn_fg_color);
-                    ui.label(text).on_hover_text("more would be too many to draw; those shown are spread evenly over all");
+                    ui.label(text)
+                        .on_hover_text("more would be too many to draw; those shown are spread evenly over all");
                 }
             });
         }

@@ -2,8 +2,8 @@
 
 use crate::testbed::window::ask::Inquiry;
 use crate::testbed::window::desk::Desk;
-use crate::testbed::window::plot::{Chart, Gas, Histogram, Trace, csv, curves, power_of_ten};
 use crate::testbed::window::format::brief;
+use crate::testbed::window::plot::{Chart, Gas, Histogram, Trace, csv, curves, power_of_ten};
 use crate::testbed::window::quantity::{deviation, number};
 use eframe::egui::{self, Color32};
 use egui_plot::{Bar, BarChart, HoverPosition, Legend, Line, LineStyle, Plot, PlotPoints, VLine};
@@ -79,7 +79,11 @@ impl Plots {
             if ui.button("Whole").on_hover_text("shows everything again after zooming (double click)").clicked() {
                 self.reset = true;
             }
-            if ui.button("CSV").on_hover_text("writes everything that was plotted into a file, one line a frame").clicked() {
+            if ui
+                .button("CSV")
+                .on_hover_text("writes everything that was plotted into a file, one line a frame")
+                .clicked()
+            {
                 self.write(desk);
             }
         });
@@ -148,10 +152,16 @@ impl Plots {
         let (chi, bins) = h.chi_squared();
         if bins > 2 {
             let text = format!("chi squared {} of {bins} bins", brief(chi));
-            ui.weak(text).on_hover_text("about as large as the number of bins in equilibrium; much larger: no equilibrium yet");
+            ui.weak(text)
+                .on_hover_text("about as large as the number of bins in equilibrium; much larger: no equilibrium yet");
         }
         let middle = |i: usize| (i as f64 + 0.5) * h.width;
-        let bars: Vec<Bar> = h.counts.iter().enumerate().map(|(i, n)| Bar::new(middle(i), f64::from(*n)).width(h.width * 0.92)).collect();
+        let bars: Vec<Bar> = h
+            .counts
+            .iter()
+            .enumerate()
+            .map(|(i, n)| Bar::new(middle(i), f64::from(*n)).width(h.width * 0.92))
+            .collect();
         let error = |i: usize, n: f64| vec![[middle(i), (n - n.sqrt()).max(0.0)], [middle(i), n + n.sqrt()]];
         let plot = frame(Chart::Speeds, self.reset).x_axis_label("speed [m/s]").include_y(0.0).include_x(0.0);
         self.reset = false;
@@ -193,7 +203,9 @@ fn label(chart: Chart, at: &HoverPosition<'_>) -> Option<String> {
     let HoverPosition::NearDataPoint { plot_name, position, .. } = at else { return None };
     let value = match chart {
         Chart::Drift => deviation(10f64.powf(position.y)),
-        Chart::Speeds => return Some(format!("{plot_name}: {} bodies\nat {} m/s", brief(position.y), brief(position.x))),
+        Chart::Speeds => {
+            return Some(format!("{plot_name}: {} bodies\nat {} m/s", brief(position.y), brief(position.x)));
+        }
         _ => format!("{} {}", number(position.y), chart.unit()),
     };
     Some(format!("{plot_name}: {value}\nat {} s", number(position.x)))

@@ -190,6 +190,9 @@ mod tests {
         for p in 0..=FINEST as u8 + 1 {
             assert_eq!(place(quality(p)), p);
         }
-        assert_eq!((meaning(0).as_str(), meaning(1).as_str(), meaning(4).as_str()), ("automatic", "20 triangles", "1280 triangles"));
+        assert_eq!(
+            (meaning(0).as_str(), meaning(1).as_str(), meaning(4).as_str()),
+            ("automatic", "20 triangles", "1280 triangles")
+        );
     }
 }

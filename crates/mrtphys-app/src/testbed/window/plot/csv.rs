@@ -23,9 +23,13 @@ pub fn csv(moments: &[Moment]) -> String {
         numbers.extend(m.ledger.entries().map(|e| e.1));
         numbers.extend(m.momentum.to_array());
         numbers.extend(m.angular_momentum.to_array());
-        numbers.iter().for_each(|x| drop(write!(text, ",{x:?}")));
+        for x in numbers {
+            let _ = write!(text, ",{x:?}");
+        }
         let _ = write!(text, ",{},{},{:?},{:?}", m.frames, m.steps, m.duration, m.cost.as_secs_f64());
-        m.counts.to_array().iter().for_each(|n| drop(write!(text, ",{n}")));
+        for n in m.counts.to_array() {
+            let _ = write!(text, ",{n}");
+        }
         text.push('\n');
     }
     text

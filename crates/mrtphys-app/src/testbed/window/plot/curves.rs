@@ -31,15 +31,30 @@ pub enum Chart {
 impl Chart {
     /// All charts: name, label of the vertical axis, and what it is.
     pub const ALL: [(Chart, &'static str, &'static str, &'static str); 9] = [
-        (Chart::Energy, "Energy", "J", "kinetic energy of translation and of rotation, potential energy, and their sum"),
+        (
+            Chart::Energy,
+            "Energy",
+            "J",
+            "kinetic energy of translation and of rotation, potential energy, and their sum",
+        ),
         (Chart::Ledger, "Ledger", "J", "where every joule went, by cause; the residual is what no cause accounts for"),
         (Chart::Drift, "Drift", "|E/E0 - 1|", "relative change of the total energy since the start, in powers of ten"),
         (Chart::Momentum, "Momentum", "Ns", "momentum of all bodies together"),
         (Chart::AngularMomentum, "Angular momentum", "Js", "angular momentum of all bodies about the origin"),
         (Chart::Counters, "Tests", "per step", "bounding-sphere tests, detect calls and contacts in a step"),
-        (Chart::Impacts, "Impacts", "1/s", "impacts in a simulated second; for a gas of spheres in a box, beside kinetic theory"),
+        (
+            Chart::Impacts,
+            "Impacts",
+            "1/s",
+            "impacts in a simulated second; for a gas of spheres in a box, beside kinetic theory",
+        ),
         (Chart::Cost, "Step time", "ms", "computing time of a physical step"),
-        (Chart::Speeds, "Speeds", "bodies", "how many bodies have which speed, beside Maxwell and Boltzmann's distribution"),
+        (
+            Chart::Speeds,
+            "Speeds",
+            "bodies",
+            "how many bodies have which speed, beside Maxwell and Boltzmann's distribution",
+        ),
     ];
 
     /// Label of the vertical axis.

@@ -23,7 +23,10 @@ impl Gas {
     /// The gas that a world is; `None`: it is none.
     pub fn of(world: &World) -> Option<Gas> {
         let s = world.settings();
-        if s.viscosity != 0.0 || world.body_count() < FEWEST || world.forces().iter().any(|f| f.field.uniform() != Some(Vec3::ZERO)) {
+        if s.viscosity != 0.0
+            || world.body_count() < FEWEST
+            || world.forces().iter().any(|f| f.field.uniform() != Some(Vec3::ZERO))
+        {
             return None;
         }
         let edges = the_box(world)?;

@@ -29,7 +29,8 @@ impl Histogram {
     /// 4 pi v^2 (m/(2 pi kT))^(3/2) exp(-m v^2/(2 kT)) dv, where kT is two thirds of the mean energy of translation: bodies of
     /// different masses share one temperature, and the curve is the sum over them.
     pub fn new(bodies: &[(f64, f64)]) -> Option<Histogram> {
-        let good: Vec<(f64, f64)> = bodies.iter().copied().filter(|(m, v)| *m > 0.0 && m.is_finite() && v.is_finite()).collect();
+        let good: Vec<(f64, f64)> =
+            bodies.iter().copied().filter(|(m, v)| *m > 0.0 && m.is_finite() && v.is_finite()).collect();
         let heat = good.iter().map(|(m, v)| m * v * v).sum::<f64>() / (3.0 * good.len().max(1) as f64);
         let fastest = good.iter().map(|b| b.1).fold(0.0, f64::max);
         if !(heat > 0.0 && heat.is_finite() && fastest > 0.0) {
