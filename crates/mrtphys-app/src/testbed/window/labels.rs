@@ -15,7 +15,7 @@ const EDGE: f32 = 8.0;
 
 /// Text on a plate, so that it can be read on any picture; the plate's rectangle.
 fn plate(ui: &Ui, anchor: Align2, at: egui::Pos2, text: &str, within: Rect) -> Rect {
-    let font = egui::TextStyle::Small.resolve(ui.style());
+    let font = FontId { size: egui::TextStyle::Small.resolve(ui.style()).size * 1.25, ..egui::FontId::default() };
     let visuals = ui.visuals();
     let most = (within.width() - 4.0 * EDGE).max(40.0);
     let galley = ui.painter().layout(text.to_string(), font, visuals.strong_text_color(), most);
@@ -100,7 +100,7 @@ pub fn legends(ui: &Ui, rect: Rect, legends: &[Legend]) {
 }
 
 fn font(ui: &Ui) -> FontId {
-    egui::TextStyle::Small.resolve(ui.style())
+    FontId { size: egui::TextStyle::Small.resolve(ui.style()).size * 1.2, ..FontId::default() }
 }
 
 fn ramp(ui: &Ui, rect: Rect, bottom: f32, legend: &Legend) -> f32 {

@@ -79,6 +79,15 @@ impl Picture {
         self.placed = Some((report.number, part));
     }
 
+    /// Takes the number of contacts of every body, in the order of the stage.
+    pub fn count_contacts(&mut self, counts: &[u32]) {
+        if self.contacts != counts {
+            self.contacts.clear();
+            self.contacts.extend_from_slice(counts);
+            self.key = None;
+        }
+    }
+
     /// Where the bodies are in the picture, in the order of the stage.
     pub fn poses(&self) -> &Poses {
         &self.between

@@ -27,6 +27,8 @@ pub struct Viewport {
     drag: Option<Drag>,
     followed: Option<(BodyId, Vec3)>,
     hover: Hover,
+    /// contacts of every body, and the report that they were asked for with
+    contacts: (Inquiry<Vec<u32>>, u64),
     trouble: Option<String>,
     opened: u64,
 }
@@ -113,6 +115,7 @@ impl Viewport {
             drag: None,
             followed: None,
             hover: Hover::default(),
+            contacts: (Inquiry::default(), 0),
             trouble: None,
             opened: 0,
         })
@@ -126,6 +129,7 @@ impl Viewport {
         if self.opened != desk.opened {
             (self.opened, self.followed, self.drag) = (desk.opened, None, None);
             self.hover = Hover::default();
+            self.contacts = (Inquiry::default(), 0);
         }
         let panes = Pane::split(rect, desk.report().sides.len());
         self.prepare(desk, &panes, render);
@@ -133,6 +137,7 @@ impl Viewport {
         self.mouse(ui, desk, &panes, &response);
         self.follow(desk);
         desk.seeing.sight.wish(&mut desk.wish);
+        self.count_contacts(ui, desk);
         self.draw(ui, render, desk, &panes);
         self.overwrite(ui, desk, &panes, &response);
     }
@@ -303,6 +308,26 @@ impl Viewport {
             mouse::follow(&mut desk.camera, from, to);
         }
         self.followed = now;
+    }
+
+    /// Counts the contacts of every body, where colors show them.
+    fn count_contacts(&mut self, ui: &egui::Ui, desk: &Desk) {
+        let (report, (inquiry, asked)) = (desk.report(), &mut self.contacts);
+        if !desk.seeing.sight.coloring.needs_contacts() {
+            return;
+        }
+        if *asked != report.number && !inquiry.is_waiting() {
+            *asked = report.number;
+            let stage = report.sides[0].shot.stage.clone();
+            inquiry.ask(&desk.session, ui.ctx(), move |studio| {
+                let mut counts = Vec::new();
+                stage.count_contacts(&studio.loaded.world, &mut counts);
+                counts
+            });
+        }
+        if let Some(counts) = inquiry.answer() {
+            self.pictures[0].count_contacts(counts);
+        }
     }
 
     /// Draws what has changed, and sees to it that the window comes back when there is more to draw.

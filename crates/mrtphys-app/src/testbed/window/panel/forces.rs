@@ -32,6 +32,7 @@ pub struct Forces {
 impl Forces {
     /// Shows it.
     pub fn show(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
+        ui.spacing_mut().slider_width = (ui.available_width() - 90.0).max(80.0);
         self.gravity(ui, desk);
         ui.add_space(4.0);
         self.medium(ui, desk);

@@ -6,7 +6,7 @@ use crate::testbed::window::format::brief;
 use crate::testbed::window::plot::{Chart, Gas, Histogram, Trace, csv, curves, power_of_ten};
 use crate::testbed::window::quantity::{deviation, number};
 use eframe::egui::{self, Color32};
-use egui_plot::{Bar, BarChart, HoverPosition, Legend, Line, LineStyle, Plot, PlotPoints, VLine};
+use egui_plot::{Bar, BarChart, HoverPosition, Line, LineStyle, Plot, PlotPoints, VLine};
 use mrtphys_view::Stage;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -55,6 +55,8 @@ pub struct Plots {
     gas: Inquiry<Option<Gas>>,
     asked: Option<(Arc<Stage>, Instant)>,
     reset: bool,
+    /// curves that were switched off
+    hidden: Vec<(Chart, &'static str)>,
 }
 
 impl Plots {
@@ -87,6 +89,8 @@ impl Plots {
                 self.write(desk);
             }
         });
+        // The area keeps its height, whatever is in it.
+        ui.set_min_height(ui.available_height());
         match self.chart {
             Chart::Speeds => self.histogram(ui, desk),
             chart => self.over_time(ui, desk, chart),
@@ -113,12 +117,15 @@ impl Plots {
         }
         plot = plot.label_formatter(move |at| label(chart, at));
         self.reset = false;
+        let color = |i: usize| Color32::from(Srgb(colors[i % colors.len()]));
+        let entries: Vec<(&'static str, Color32)> = all.iter().map(|c| (c.name, color(c.color))).collect();
+        ui.horizontal_wrapped(|ui| self.legend(ui, chart, &entries));
+        let hidden = self.hidden.clone();
         plot.show(ui, |ui| {
-            for curve in all {
-                let [r, g, b] = colors[curve.color % colors.len()];
+            for curve in all.into_iter().filter(|c| !hidden.contains(&(chart, c.name))) {
                 let style = if curve.dashed { LineStyle::dashed_loose() } else { LineStyle::Solid };
                 let line = Line::new(curve.name, PlotPoints::from(curve.points));
-                ui.line(line.color(Color32::from_rgb(r, g, b)).style(style).width(1.6));
+                ui.line(line.color(color(curve.color)).style(style).width(1.6));
             }
             ui.vline(VLine::new("", now).color(line_of).width(1.0).allow_hover(false));
         });
@@ -143,18 +150,24 @@ impl Plots {
             let found = Histogram::new(&desk.report().sides[0].extras.speeds);
             self.speeds = found.map(|h| (number_of_report, h));
         }
-        let Some((_, h)) = &self.speeds else {
+        let Some((_, h)) = self.speeds.take() else {
             ui.weak("Nothing moves.");
             return;
         };
         let colors = if ui.visuals().dark_mode { &ON_DARK } else { &ON_LIGHT };
-        let color = |i: usize| Color32::from_rgb(colors[i][0], colors[i][1], colors[i][2]);
+        let color = |i: usize| Color32::from(Srgb(colors[i]));
         let (chi, bins) = h.chi_squared();
-        if bins > 2 {
-            let text = format!("chi squared {} of {bins} bins", brief(chi));
-            ui.weak(text)
-                .on_hover_text("about as large as the number of bins in equilibrium; much larger: no equilibrium yet");
-        }
+        let (bodies, errors, theory) = ("bodies", "root of their number", "Maxwell and Boltzmann");
+        ui.horizontal_wrapped(|ui| {
+            let entries = [(bodies, color(0)), (errors, color(7)), (theory, color(3))];
+            self.legend(ui, Chart::Speeds, &entries);
+            if bins > 2 {
+                let hint = "about as large as the number of bins in equilibrium; much larger: no equilibrium yet";
+                ui.weak(format!("chi squared {} of {bins} bins", brief(chi))).on_hover_text(hint);
+            }
+        });
+        let shows = |name: &'static str| !self.hidden.contains(&(Chart::Speeds, name));
+        let [bodies_on, errors_on, theory_on] = [bodies, errors, theory].map(shows);
         let middle = |i: usize| (i as f64 + 0.5) * h.width;
         let bars: Vec<Bar> = h
             .counts
@@ -166,13 +179,36 @@ impl Plots {
         let plot = frame(Chart::Speeds, self.reset).x_axis_label("speed [m/s]").include_y(0.0).include_x(0.0);
         self.reset = false;
         plot.label_formatter(|at| label(Chart::Speeds, at)).show(ui, |ui| {
-            ui.bar_chart(BarChart::new("bodies", bars).color(color(0).gamma_multiply(0.55)).allow_hover(false));
-            for (i, n) in h.counts.iter().enumerate().filter(|(_, n)| **n > 0) {
-                let bar = Line::new("error: root of the number", error(i, f64::from(*n)));
+            if bodies_on {
+                ui.bar_chart(BarChart::new(bodies, bars).color(color(0).gamma_multiply(0.55)).allow_hover(false));
+            }
+            for (i, n) in h.counts.iter().enumerate().filter(|(_, n)| errors_on && **n > 0) {
+                let bar = Line::new(errors, error(i, f64::from(*n)));
                 ui.line(bar.color(color(7)).width(1.2).allow_hover(false));
             }
-            ui.line(Line::new("Maxwell-Boltzmann", h.curve.clone()).color(color(3)).width(2.0));
+            if theory_on {
+                ui.line(Line::new(theory, h.curve.clone()).color(color(3)).width(2.0));
+            }
         });
+        self.speeds = Some((number_of_report, h));
+    }
+
+    /// The names of the curves; a click switches one off and on.
+    fn legend(&mut self, ui: &mut egui::Ui, chart: Chart, entries: &[(&'static str, Color32)]) {
+        for (name, color) in entries {
+            let key = (chart, *name);
+            let on = !self.hidden.contains(&key);
+            let faint = if on { *color } else { color.gamma_multiply(0.3) };
+            let (rect, line) = ui.allocate_exact_size(egui::vec2(16.0, 14.0), egui::Sense::click());
+            ui.painter().rect_filled(rect.shrink2(egui::vec2(0.0, 5.0)), 1.0, faint);
+            let text = if on { egui::RichText::new(*name) } else { egui::RichText::new(*name).weak() };
+            let label = ui.add(egui::Label::new(text.small()).sense(egui::Sense::click()));
+            let hint = if on { "click to hide this curve" } else { "click to show this curve" };
+            if line.clicked() || label.on_hover_text(hint).clicked() {
+                if on { self.hidden.push(key) } else { self.hidden.retain(|k| *k != key) }
+            }
+            ui.add_space(6.0);
+        }
     }
 
     /// Writes what was plotted beside where the program was started.
@@ -186,10 +222,18 @@ impl Plots {
     }
 }
 
+/// A color as bytes.
+struct Srgb([u8; 3]);
+
+impl From<Srgb> for Color32 {
+    fn from(Srgb([r, g, b]): Srgb) -> Color32 {
+        Color32::from_rgb(r, g, b)
+    }
+}
+
 /// A plot as all of them are.
 fn frame<'a>(chart: Chart, reset: bool) -> Plot<'a> {
     let plot = Plot::new(("plot", chart.unit(), chart as u8))
-        .legend(Legend::default().position(egui_plot::Corner::LeftTop).background_alpha(0.7))
         .y_axis_label(chart.unit())
         .y_axis_min_width(52.0)
         .y_axis_formatter(|mark, _| number(mark.value))
