@@ -68,6 +68,8 @@ pub struct Core {
     /// commands that wait for the end of a frame or of restoring
     pub(super) queue: VecDeque<Command>,
     pub(super) wish: Wish,
+    /// what the mouse holds
+    holding: Option<Grip>,
     trouble: Option<String>,
     troubles: u64,
     number: u64,
@@ -110,6 +112,7 @@ impl Core {
             restore: None,
             queue: VecDeque::new(),
             wish: Wish::default(),
+            holding: None,
             trouble: None,
             troubles: 0,
             number: 0,
@@ -149,6 +152,14 @@ impl Core {
     /// Does as it is told. What changes a world waits for the end of the frame where a rival must be changed at the same
     /// time, and for a frame to be restored that was asked for before.
     pub fn obey(&mut self, command: Command) {
+        let nothing_new = match &command {
+            Command::Wish(wish) => *wish == self.wish,
+            Command::Hold(grip) => *grip == self.holding && self.queue.is_empty(),
+            _ => false,
+        };
+        if nothing_new {
+            return;
+        }
         self.news = News::Answer;
         let waits = match &command {
             Command::Restart
@@ -242,8 +253,7 @@ impl Core {
         let now = self.now();
         let stage = self.tape.shot(0).map(|s| s.stage.clone());
         self.queue.clear();
-        self.restore = None;
-        self.trouble = None;
+        (self.restore, self.trouble, self.holding, self.stride) = (None, None, None, 1);
         let budget = self.tape.budget();
         self.tape = Tape::new(self.origin.clone(), budget);
         let machine = self.origin.awake();
@@ -263,10 +273,8 @@ impl Core {
     }
 
     fn set_wish(&mut self, wish: Wish) {
-        if self.wish != wish {
-            self.wish = wish;
-            self.listen();
-        }
+        self.wish = wish;
+        self.listen();
     }
 
     /// Impacts are written down only while somebody wants to know.
@@ -276,10 +284,8 @@ impl Core {
     }
 
     fn hold(&mut self, grip: Option<Grip>) {
-        if grip.is_none() && self.lanes[0].machine.held().is_none() {
-            return;
-        }
-        let standing = self.task == Task::Stand && !self.is_inside();
+        self.holding = grip;
+        let standing = self.task == Task::Stand;
         self.do_deed(Deed::Hold { grip, standing }, false);
     }
 
@@ -383,6 +389,10 @@ impl Core {
     fn begin(&mut self, merged: u32) {
         let here = self.position();
         self.look_again();
+        if self.holding.is_none() && self.lanes[0].machine.held().is_some() {
+            // The hand of a frame that was gone back to.
+            self.do_deed(Deed::Hold { grip: None, standing: false }, false);
+        }
         self.tape.cut(here);
         self.tape.note_merged(here.tick, merged);
         self.lanes.iter_mut().for_each(|lane| lane.machine.begin(merged));
@@ -470,11 +480,13 @@ impl Core {
     pub(super) fn look(&mut self, follows: bool) {
         let start = self.now();
         let old = self.tape.shots().next_back().map(|s| s.tick);
-        self.lanes.iter_mut().for_each(|lane| lane.look(follows));
-        if !self.is_inside() {
+        let is_new = !self.lanes[0].is_seen;
+        self.lanes.iter_mut().filter(|lane| !lane.is_seen).for_each(|lane| lane.look(follows));
+        if is_new && !self.is_inside() {
             self.tape.push(self.lanes[0].shot.clone());
             let tick = self.position().tick;
-            self.stride = old.map_or(1, |old| tick.saturating_sub(old).max(1));
+            // Nothing is learned from a frame that was gone back to, or looked at again.
+            self.stride = old.and_then(|old| tick.checked_sub(old)).filter(|&n| n > 0).unwrap_or(self.stride);
         }
         self.look_cost = self.now().saturating_duration_since(start);
         self.since_look = Duration::ZERO;
@@ -553,5 +565,13 @@ impl Core {
         let target = self.tape.range().1;
         self.return_to(target);
         self.complain(message.into());
+    }
+}
+
+#[cfg(test)]
+impl Core {
+    pub fn look_for_measurement(&mut self) {
+        self.lanes.iter_mut().for_each(|lane| lane.is_seen = false);
+        self.look(false);
     }
 }

@@ -87,6 +87,7 @@ impl Lane {
 
     /// What happened so far is no part of a sample to come: after a jump to another frame.
     pub fn forget(&mut self) {
+        self.machine.loaded.world.drain_events().for_each(drop);
         let world = self.machine.world();
         self.seen = Seen { totals: *world.totals(), steps: world.steps(), time: world.time(), ..Seen::default() };
         self.samples.clear();

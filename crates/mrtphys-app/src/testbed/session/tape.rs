@@ -13,6 +13,8 @@ use std::time::Duration;
 pub const BUDGET: usize = 512 << 20;
 /// Part of it that is for pictures.
 const SHOTS_PART: f64 = 0.75;
+/// A stage takes about so much memory for a body \[bytes\].
+const STAGE_BYTES: usize = 256;
 /// At least so many pictures are kept, whatever they cost.
 const FEWEST_SHOTS: usize = 2;
 /// A state is kept when so much computing has passed since the last: restoring takes no longer until states are thinned.
@@ -108,6 +110,8 @@ impl Keys {
 pub struct Tape {
     budget: usize,
     shots: VecDeque<Arc<Shot>>,
+    /// memory of each, and of all \[bytes\]
+    weights: VecDeque<usize>,
     shot_bytes: usize,
     /// what was done, in order; deeds are numbered, and those that are forgotten keep their numbers
     deeds: Vec<(Position, Deed)>,
@@ -126,6 +130,7 @@ impl Tape {
         let mut tape = Tape {
             budget,
             shots: VecDeque::new(),
+            weights: VecDeque::new(),
             shot_bytes: 0,
             deeds: Vec::new(),
             forgotten: 0,
@@ -161,20 +166,26 @@ impl Tape {
     /// Records a shot; one of the same frame is replaced.
     pub fn push(&mut self, shot: Arc<Shot>) {
         self.made(shot.tick);
-        if self.shots.back().is_some_and(|s| s.tick == shot.tick) {
-            self.drop_shot(false);
+        let place = self.shots.partition_point(|s| s.tick < shot.tick);
+        if self.shots.get(place).is_some_and(|s| s.tick == shot.tick) {
+            self.drop_shot(place);
         }
-        self.shot_bytes += bytes(&shot);
-        self.shots.push_back(shot);
+        // A stage is shared by the frames from it on.
+        let before = place.checked_sub(1).map(|i| &self.shots[i]);
+        let new_stage = before.is_some_and(|s| !Arc::ptr_eq(&s.stage, &shot.stage));
+        let bytes = bytes(&shot) + if new_stage { shot.stage.body_count() * STAGE_BYTES } else { 0 };
+        self.shot_bytes += bytes;
+        self.shots.insert(place, shot);
+        self.weights.insert(place, bytes);
         let most = (self.budget as f64 * SHOTS_PART) as usize;
         while self.shot_bytes > most && self.shots.len() > FEWEST_SHOTS {
-            self.drop_shot(true);
+            self.drop_shot(0);
         }
     }
 
-    fn drop_shot(&mut self, first: bool) {
-        let gone = if first { self.shots.pop_front() } else { self.shots.pop_back() };
-        self.shot_bytes -= gone.map_or(0, |s| bytes(&s));
+    fn drop_shot(&mut self, place: usize) {
+        self.shots.remove(place);
+        self.shot_bytes -= self.weights.remove(place).unwrap_or(0);
     }
 
     /// Keeps a state of each world if it is time, and forgets what nobody can ask for any more. `cost`: what was computed
@@ -278,7 +289,7 @@ impl Tape {
     /// Forgets everything after here. In the middle of a frame, the frame itself goes on.
     pub fn cut(&mut self, here: Position) {
         while self.shots.back().is_some_and(|s| s.tick > here.tick) {
-            self.drop_shot(false);
+            self.drop_shot(self.shots.len() - 1);
         }
         self.deeds.retain(|(at, _)| *at <= here);
         self.merged.retain(|(tick, _)| *tick < here.tick || (*tick == here.tick && here.done > 0));

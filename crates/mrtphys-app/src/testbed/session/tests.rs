@@ -497,6 +497,8 @@ fn frames_that_are_not_recorded_can_be_gone_to() {
     let missing = (1..last).rev().find(|t| !recorded.contains(t)).unwrap();
     b.send(Command::Seek(missing)).settle();
     let report = b.report();
+    let ticks: Vec<u64> = b.core.tape.shots().map(|s| s.tick).collect();
+    assert!(ticks.is_sorted() && ticks.contains(&missing), "{ticks:?}");
     let mut twin = bench("thesis/cube-2");
     twin.frames(missing as usize);
     assert_eq!(b.hash(), twin.hash());
@@ -715,6 +717,100 @@ fn a_hand_brings_a_body_to_its_place_and_the_books_balance() {
                 "{residual} J of {:?}",
                 world.ledger()
             );
+        }
+    }
+}
+
+#[test]
+fn nobody_is_held_by_the_hand_of_the_past() {
+    let mut b = ball();
+    let id = b.body("ball");
+    b.send(Command::Go(true));
+    b.run(0.1);
+    b.send(Command::Hold(Some(Grip { body: id, point: Vec3::ZERO, target: Vec3::new(9.0, 1.0, 0.0) })));
+    b.run(0.5);
+    let now = b.report().timeline.now;
+    b.send(Command::Hold(None));
+    b.run(0.1);
+    b.send(Command::Seek(now - 3)).settle();
+    b.frames(1);
+    let v = b.core.loaded().world.body(id).unwrap().velocity;
+    b.frames(10);
+    assert_eq!(b.core.loaded().world.body(id).unwrap().velocity, v);
+}
+
+#[test]
+fn a_command_that_changes_nothing_is_no_news() {
+    let mut b = ball();
+    b.report();
+    b.send(Command::Hold(None)).send(Command::Wish(Wish::default()));
+    assert_eq!(b.core.news().0, News::None);
+    b.send(Command::Wish(Wish { trail: 3, ..Wish::default() }));
+    assert_eq!(b.core.news().0, News::Answer);
+}
+
+#[test]
+fn impacts_of_frames_that_were_restored_are_not_told_again() {
+    let mut b = bench("thesis/cube-3");
+    b.send(Command::Wish(Wish { impacts: true, ..Wish::default() }));
+    b.frames(60);
+    assert!(!b.report().sides[0].extras.impacts.is_empty());
+    b.send(Command::Seek(50)).settle();
+    assert!(b.report().sides[0].extras.impacts.is_empty());
+    let before = b.core.loaded().world.totals().impacts;
+    b.frames(1);
+    let told = b.report().sides[0].extras.impacts.len() as u64;
+    assert_eq!(told, b.core.loaded().world.totals().impacts - before);
+}
+
+/// Large scenes: `cargo test --release -- --ignored --nocapture session_overhead`.
+#[test]
+#[ignore = "a measurement"]
+fn session_overhead() {
+    for name in ["gas-100k", "thesis/cube-8", "cradle"] {
+        let mut loaded = scene(name).build().unwrap();
+        let frames = if name == "gas-100k" { 12 } else { 300 };
+        (0..3).for_each(|_| loaded.world.frame().unwrap());
+        let start = Instant::now();
+        (0..frames).for_each(|_| loaded.world.frame().unwrap());
+        let bare = start.elapsed() / frames;
+        for mode in [RealTime::Off, RealTime::Forced] {
+            let mut core = Core::new(scene(name).build().unwrap(), Box::new(Instant::now));
+            core.obey(Command::RealTime(mode));
+            core.obey(Command::Frame);
+            while core.work() == Next::Now {}
+            core.report();
+            core.obey(Command::RealTime(RealTime::Off));
+            core.obey(Command::Go(true));
+            let begin = core.position().tick;
+            let start = Instant::now();
+            while core.position().tick < begin + u64::from(frames) {
+                core.work();
+            }
+            let with = start.elapsed() / frames;
+            let start = Instant::now();
+            core.report();
+            let report = start.elapsed();
+            let all = Wish {
+                contacts: true,
+                impacts: true,
+                velocities: true,
+                boxes: true,
+                cells: true,
+                speeds: true,
+                trail: 9,
+                selected: None,
+            };
+            core.obey(Command::Wish(all));
+            let start = Instant::now();
+            core.report();
+            println!(
+                "{name}: frame {bare:?} bare, {with:?} in a session; report {report:?}, with all wishes {:?}",
+                start.elapsed()
+            );
+            let start = Instant::now();
+            core.look_for_measurement();
+            println!("  a look takes {:?}", start.elapsed());
         }
     }
 }
