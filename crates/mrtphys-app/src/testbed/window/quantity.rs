@@ -4,11 +4,19 @@ use eframe::egui;
 use mrtphys::Vec3;
 use std::ops::RangeInclusive;
 
-/// Digits that are shown.
-const DIGITS: usize = 5;
+/// Digits that are shown, and in vectors.
+const DIGITS: usize = 6;
+const FEWER_DIGITS: usize = 4;
+/// Width of a component of a vector [points].
+const COMPONENT: f32 = 62.0;
 
-/// A number with at most five significant digits: plain where it is short, else with a power of ten.
+/// A number with at most six significant digits: plain where it is short, else with a power of ten.
 pub fn number(x: f64) -> String {
+    rounded(x, DIGITS)
+}
+
+/// A number with so many significant digits.
+fn rounded(x: f64, digits: usize) -> String {
     if x == f64::INFINITY {
         return "infinite".into();
     }
@@ -19,14 +27,14 @@ pub fn number(x: f64) -> String {
         return "0".into();
     }
     // Rounded first: 9.99999 has another power of ten than it seems.
-    let scientific = format!("{x:.*e}", DIGITS - 1);
-    let (digits, power) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    let scientific = format!("{x:.*e}", digits - 1);
+    let (mantissa, power) = scientific.split_once('e').unwrap_or((&scientific, "0"));
     let power: i32 = power.parse().unwrap_or(0);
-    if (-3..DIGITS as i32).contains(&power) {
-        let decimals = (DIGITS as i32 - 1 - power).max(0) as usize;
+    if (-3..digits as i32).contains(&power) {
+        let decimals = (digits as i32 - 1 - power).max(0) as usize;
         return trimmed(&format!("{x:.decimals$}")).to_string();
     }
-    format!("{}e{power}", trimmed(digits))
+    format!("{}e{power}", trimmed(mantissa))
 }
 
 fn trimmed(digits: &str) -> &str {
@@ -132,32 +140,43 @@ impl<'a> Entry<'a> {
     /// Shows the value and lets it be dragged or typed; what is typed holds from Enter on. The new value, if it was
     /// changed: by more than its digits show, so that looking at a number never rounds it.
     pub fn show(&self, ui: &mut egui::Ui, value: f64) -> Option<f64> {
+        self.widget(ui, value, (DIGITS, None), self.hint)
+    }
+
+    fn widget(&self, ui: &mut egui::Ui, value: f64, (digits, width): (usize, Option<f32>), hint: &str) -> Option<f64> {
         let mut new = value;
         let unit = self.unit;
         let speed = (value.abs() * 0.01).max(self.scale.abs() * 0.005);
-        let widget = egui::DragValue::new(&mut new)
+        let drag = egui::DragValue::new(&mut new)
             .speed(if speed.is_finite() { speed } else { self.scale })
             .range(self.range.clone())
             .clamp_existing_to_range(false)
             .update_while_editing(false)
-            .custom_formatter(|x, _| number(x))
-            .custom_parser(move |text| parse(text, unit))
-            .suffix(if unit.is_empty() { String::new() } else { format!(" {unit}") });
-        let response = ui.add(widget).on_hover_text(self.hint);
-        (response.changed() && number(new) != number(value)).then_some(new)
+            .custom_formatter(move |x, _| rounded(x, digits))
+            .custom_parser(move |text| parse(text, unit));
+        let response = match width {
+            // A number that gets longer must not push the panel about.
+            Some(width) => ui.add_sized([width, ui.spacing().interact_size.y], drag.clip_text(true)),
+            None if unit.is_empty() => ui.add(drag),
+            None => ui.add(drag.suffix(format!(" {unit}"))),
+        };
+        let changed = response.changed();
+        response.on_hover_ui(|ui| {
+            ui.set_max_width(320.0);
+            ui.label(format!("{hint}\n{}", with_unit(value, unit)));
+        });
+        (changed && rounded(new, digits) != rounded(value, digits)).then_some(new)
     }
 
     /// The three components of a vector in a row. The new vector, if it was changed.
     pub fn vector(&self, ui: &mut egui::Ui, value: Vec3) -> Option<Vec3> {
         let mut new = value.to_array();
         let mut changed = false;
-        let bare = Entry { unit: "", ..self.clone() };
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 3.0;
-            ui.spacing_mut().interact_size.x = 46.0;
             for (x, axis) in new.iter_mut().zip(["x", "y", "z"]) {
-                let hint = format!("{axis}: {} [{}]", self.hint, if self.unit.is_empty() { "1" } else { self.unit });
-                if let Some(y) = (Entry { hint: &hint, ..bare.clone() }).show(ui, *x) {
+                let hint = format!("{axis}: {}", self.hint);
+                if let Some(y) = self.widget(ui, *x, (FEWER_DIGITS, Some(COMPONENT)), &hint) {
                     (*x, changed) = (y, true);
                 }
             }
@@ -174,11 +193,11 @@ mod tests {
     fn numbers_are_short_and_true() {
         for (x, text) in [
             (0.0, "0"),
-            (9.80665, "9.8067"),
+            (9.80665, "9.80665"),
             (-1.5, "-1.5"),
-            (9.999999, "10"),
-            (133_888.0, "1.3389e5"),
-            (12_345.0, "12345"),
+            (9.9999999, "10"),
+            (133_888.0, "133888"),
+            (1_338_885.0, "1.33888e6"),
             (0.001, "0.001"),
             (0.00012, "1.2e-4"),
             (2.22e-15, "2.22e-15"),
@@ -188,6 +207,7 @@ mod tests {
             assert_eq!(number(x), text);
         }
         assert_eq!(with_unit(2.0, "m/s"), "2 m/s");
+        assert_eq!((rounded(-0.041_655_1, 4), rounded(99_999.0, 4)), ("-0.04166".into(), "1e5".into()));
     }
 
     #[test]

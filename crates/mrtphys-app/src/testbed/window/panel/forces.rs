@@ -32,7 +32,7 @@ pub struct Forces {
 impl Forces {
     /// Shows it.
     pub fn show(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
-        ui.spacing_mut().slider_width = (ui.available_width() - 90.0).max(80.0);
+        ui.spacing_mut().slider_width = (ui.available_width() - 130.0).clamp(80.0, 400.0);
         self.gravity(ui, desk);
         ui.add_space(4.0);
         self.medium(ui, desk);
