@@ -55,6 +55,7 @@ pub use film::Film;
 pub use frame::{Frame, Illumination, Light, Look, Mode, Quality};
 pub use gpu::Gpu;
 pub use image::Image;
+pub use lists::Sorting;
 pub use overlay::Overlay;
 pub use palette::Theme;
 pub use pick::Hit;

@@ -63,6 +63,9 @@ impl Poses {
 
 /// Normalized linear interpolation: for the small angles between two steps the same as the great circle to third order.
 fn between(a: Quat, b: Quat, part: Real) -> Quat {
+    if a == b {
+        return b;
+    }
     let sign = if a.dot(b) < 0.0 { -1.0 } else { 1.0 };
     let mix = |x: Real, y: Real| x * (1.0 - part) + sign * y * part;
     Quat::new(mix(a.x, b.x), mix(a.y, b.y), mix(a.z, b.z), mix(a.w, b.w)).try_normalize().unwrap_or(b)
