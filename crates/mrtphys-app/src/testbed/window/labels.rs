@@ -12,6 +12,8 @@ use std::time::Duration;
 
 /// Distance from the edges [points].
 const EDGE: f32 = 8.0;
+/// What is below the buttons at the top [points].
+const BELOW_TOOLS: f32 = 38.0;
 
 /// Text on a plate, so that it can be read on any picture; the plate's rectangle.
 fn plate(ui: &Ui, anchor: Align2, at: egui::Pos2, text: &str, within: Rect) -> Rect {
@@ -52,7 +54,7 @@ pub fn side(ui: &Ui, report: &Report, pane: Pane) {
     let Some(side) = report.sides.get(pane.side) else { return };
     let title = if pane.side == 0 { "World" } else { "Rival" };
     let text = format!("{title}: {}\n{}", settings(&side.numbers), costs(&side.numbers));
-    plate(ui, Align2::LEFT_TOP, pane.rect.min + egui::vec2(EDGE, EDGE), &text, pane.rect);
+    plate(ui, Align2::LEFT_TOP, pane.rect.min + egui::vec2(EDGE, BELOW_TOOLS), &text, pane.rect);
     if pane.side == 1
         && let Some(agrees) = report.rival_agrees
     {
