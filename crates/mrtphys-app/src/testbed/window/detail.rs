@@ -86,6 +86,7 @@ mod tests {
 
     #[test]
     fn pauses_are_neither_busy_nor_long() {
-        assert_eq!((pause(ms(1.0)), pause(ms(80.0)), pause(ms(4000.0))), (ms(16.0), ms(80.0), ms(200.0)));
+        let of = |x: u64| pause(Duration::from_millis(x)).as_millis();
+        assert_eq!([of(1), of(80), of(4000)], [16, 80, 200]);
     }
 }

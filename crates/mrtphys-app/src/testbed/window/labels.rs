@@ -190,7 +190,7 @@ mod tests {
     fn costs_are_those_of_a_step() {
         let mut numbers = Numbers { cost: Duration::from_millis(16), ..Numbers::default() };
         numbers.counters = Counters { sphere_tests: 133_888, detect_calls: 2088, ..Counters::default() };
-        assert_eq!(costs(&numbers), "2 ms a step, 133 888 sphere tests, 2 088 detect calls");
+        assert_eq!(costs(&numbers), "2.00 ms a step, 133 888 sphere tests, 2 088 detect calls");
         numbers.stages = vec![("move", Duration::from_micros(40)), ("find", Duration::from_micros(60))];
         assert_eq!(step_time(&numbers), 1e-4);
     }
