@@ -1,7 +1,7 @@
 //! Which curves a plot has.
 
 use super::gas::Gas;
-use super::trace::{Moment, Rates};
+use super::trace::{Moment, Rates, grouped};
 use mrtphys::ledger::Ledger;
 
 /// What is plotted over time.
@@ -76,6 +76,8 @@ pub struct Curve {
     pub points: Vec<[f64; 2]>,
 }
 
+/// Rates and computing times are means over a part of the time shown: so many points.
+const MEANS: usize = 240;
 /// Smallest deviation that is told from none: a double has no smaller relative step.
 const FINEST: f64 = 1e-17;
 
@@ -87,6 +89,9 @@ fn curve(moments: &[Moment], name: &'static str, color: usize, value: &dyn Fn(&M
 
 /// The curves of a chart. Moments without a value are left out.
 pub fn curves(chart: Chart, moments: &[Moment], gas: Option<&Gas>) -> Vec<Curve> {
+    let rates = matches!(chart, Chart::Impacts | Chart::Cost | Chart::Counters);
+    let means = if rates { grouped(moments, MEANS) } else { Vec::new() };
+    let moments = if rates { &means } else { moments };
     let of = |name, color, value: &dyn Fn(&Moment) -> Option<f64>| curve(moments, name, color, value);
     match chart {
         Chart::Energy => vec![

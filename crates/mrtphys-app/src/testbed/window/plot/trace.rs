@@ -79,6 +79,17 @@ impl Trace {
     }
 }
 
+/// At most so many moments, neighbours taken together: counts of single frames fluctuate, and their mean is what is looked for.
+pub fn grouped(moments: &[Moment], most: usize) -> Vec<Moment> {
+    let size = moments.len().div_ceil(most.max(1)).max(1);
+    let together = |group: &[Moment]| {
+        let mut all = group.first().cloned()?;
+        group[1..].iter().for_each(|m| merge(&mut all, m));
+        Some(all)
+    };
+    moments.chunks(size).filter_map(together).collect()
+}
+
 /// Two moments as one: the state is that of the later, the rest is summed.
 fn merge(into: &mut Moment, next: &Sample) {
     let before = into.clone();
@@ -159,6 +170,16 @@ mod tests {
         assert_eq!(ticks, (1..=11).collect::<Vec<_>>());
         trace.extend(&[sample(0)]);
         assert_eq!(trace.moments().len(), 1, "from the start again");
+    }
+
+    #[test]
+    fn groups_are_few_and_keep_the_sums() {
+        let moments: Vec<Moment> = (1..=1000).map(sample).collect();
+        let groups = grouped(&moments, 240);
+        assert_eq!((groups.len(), groups.iter().map(|m| m.frames).sum::<u64>()), (200, 1000));
+        assert!(groups.iter().all(|m| m.per_second(m.counts.sphere_tests) == Some(32.0)));
+        assert_eq!(grouped(&moments[..7], 240).len(), 7);
+        assert!(grouped(&[], 240).is_empty());
     }
 
     #[test]
