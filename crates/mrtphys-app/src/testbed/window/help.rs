@@ -91,16 +91,15 @@ fn help(ui: &mut egui::Ui) {
 }
 
 fn about(ui: &mut egui::Ui, driver: &str) {
-    ui.set_max_width(420.0);
+    ui.set_width(400.0);
     ui.heading("mrtphys");
     ui.label("Rigid bodies that collide as physics says.");
     ui.add_space(6.0);
     let lines = [
         ("Version", crate::cli::version()),
-        ("Precision", "double (IEEE 754, 64 bits); the same bits on every machine".into()),
+        ("Precision", "double (64 bits), the same bits on every machine".into()),
         ("Drawn by", driver.to_string()),
         ("Licence", env!("CARGO_PKG_LICENSE").into()),
-        ("Source", env!("CARGO_PKG_REPOSITORY").into()),
     ];
     for (name, text) in lines {
         line(ui, 80.0, name, &text);
