@@ -1,7 +1,9 @@
 //! What all parts of the window share.
 
 use super::action::Action;
+use super::plot::Trace;
 use super::probe::Probes;
+use super::seeing::Seeing;
 use crate::testbed::session::{Command, Report, Session, Wish};
 use eframe::egui;
 use mrtphys::BodyId;
@@ -21,6 +23,8 @@ pub struct Desk {
     pub look: Look,
     /// from where; the viewport moves it
     pub camera: Camera,
+    /// what is drawn over the bodies, and how the user looks at them
+    pub seeing: Seeing,
     /// the body whose properties are shown
     pub selected: Option<BodyId>,
     /// what reports are to contain: empty at the beginning of every picture, and whoever needs something sets it
@@ -33,6 +37,8 @@ pub struct Desk {
     pub messages: Vec<Message>,
     /// where named controls are
     pub probes: Probes,
+    /// what happened since the scene was opened, for plots
+    pub trace: Trace,
     /// what was wished for last
     sent: Wish,
 }
@@ -56,12 +62,14 @@ impl Desk {
             path,
             look: Look::default(),
             camera,
+            seeing: Seeing::default(),
             selected: None,
             wish: Wish::default(),
             actions: Vec::new(),
             opened: 0,
             messages: Vec::new(),
             probes: Probes::default(),
+            trace: Trace::default(),
             sent: Wish::default(),
         }
     }
@@ -74,6 +82,7 @@ impl Desk {
         self.camera = self.session.report().sides[0].shot.stage.camera();
         (self.name, self.path, self.selected) = (name, path, None);
         (self.sent, self.opened) = (Wish::default(), self.opened + 1);
+        self.trace.clear();
     }
 
     /// The newest report.
@@ -88,7 +97,9 @@ impl Desk {
 
     /// Before the parts are shown: takes the newest report, and forgets what the last picture asked for.
     pub fn begin(&mut self) {
-        self.session.poll();
+        if self.session.poll() {
+            self.trace.extend(&self.session.report().sides[0].samples);
+        }
         self.wish = Wish { selected: self.selected, ..Wish::default() };
         self.probes.clear();
     }

@@ -6,14 +6,20 @@ use crate::testbed::session::RealTime;
 use eframe::egui;
 
 /// What the mouse does in the picture.
-const MOUSE: [(&str, &str); 8] = [
+const MOUSE: [(&str, &str); 14] = [
     ("Left drag", "go round the point looked at, at the same distance"),
-    ("Middle drag", "move the point looked at"),
-    ("Right drag, vertical", "come nearer, or go away"),
+    ("Middle drag, or Shift and left", "move the point looked at"),
+    ("Right drag, or Ctrl and left: vertical", "come nearer, or go away"),
     ("Right drag, horizontal", "turn the picture about the line of sight"),
-    ("Wheel", "come nearer, or go away"),
+    ("Wheel", "come nearer to what is under the mouse, or go away"),
     ("Click on a body", "select it: its properties are in the panel"),
-    ("Drag a body with Ctrl", "hold it with a spring, and throw it"),
+    ("Double click on a body", "look at it"),
+    ("Alt and drag a body, or H and drag", "hold it with a spring, and throw it; the wheel brings it nearer"),
+    ("1, 2, 3, with Shift from behind", "look along x, y, z"),
+    ("L", "the camera follows the selected body, or no longer"),
+    ("B", "throw a ball along the line of sight"),
+    ("Delete", "remove the selected body"),
+    ("Escape", "select nothing"),
     ("Drop a file on the window", "open a scene, or go on from a snapshot"),
 ];
 

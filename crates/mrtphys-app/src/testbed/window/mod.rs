@@ -2,16 +2,26 @@
 
 // What is shared.
 mod action;
+mod ask;
 mod desk;
 mod format;
 mod pending;
+mod plot;
 mod probe;
+mod quantity;
+mod seeing;
 mod table;
 
 // The parts that stand still.
 mod menu;
 mod panel;
 mod transport;
+
+// The picture.
+mod detail;
+mod labels;
+mod mouse;
+mod picture;
 mod viewport;
 
 // The parts that float.

@@ -1,14 +1,24 @@
 //! The panel at the right: sections under each other, each of which can be folded; and the area at the bottom.
 
 mod animation;
+mod bodies;
+mod body;
 mod broad_phase;
+mod compare;
 mod energies;
+mod fields;
+mod forces;
+mod making;
+mod overlays;
+mod plots;
+mod render;
 mod stages;
 
 use super::desk::Desk;
 use eframe::egui;
 
 pub use animation::meaning;
+pub use bodies::throw_ball;
 
 /// What shows a section.
 type Show = Box<dyn FnMut(&mut egui::Ui, &mut Desk)>;
@@ -42,6 +52,12 @@ fn sections() -> Vec<Section> {
     let mut energies = energies::Energies::default();
     let mut broad_phase = broad_phase::BroadPhase::default();
     let mut stages = stages::Stages::default();
+    let mut forces = forces::Forces::default();
+    let mut render = render::Render::default();
+    let mut overlays = overlays::Overlays::default();
+    let mut compare = compare::Compare::default();
+    let mut body = body::Body::default();
+    let mut bodies = bodies::Bodies::default();
     vec![
         section("animation", "Animation", "How time passes", true, move |ui, desk| animation.show(ui, desk)),
         section("energies", "Energy", "Energies, and where every joule went", true, move |ui, desk| {
@@ -59,12 +75,25 @@ fn sections() -> Vec<Section> {
         section("stages", "Time per stage", "Where the computing time goes", false, move |ui, desk| {
             stages.show(ui, desk);
         }),
+        section("forces", "Forces", "Gravity, viscosity, and all other fields", false, move |ui, desk| {
+            forces.show(ui, desk);
+        }),
+        section("render", "Render", "How the picture is drawn", false, move |ui, desk| render.show(ui, desk)),
+        section("overlays", "Look closer", "What is drawn over the bodies, and what their colors show", false, {
+            move |ui, desk| overlays.show(ui, desk)
+        }),
+        section("compare", "Compare", "The same world with other settings, side by side", false, move |ui, desk| {
+            compare.show(ui, desk);
+        }),
+        section("body", "Body", "The selected body", false, move |ui, desk| body.show(ui, desk)),
+        section("bodies", "Bodies", "All bodies, and new ones", false, move |ui, desk| bodies.show(ui, desk)),
     ]
 }
 
 /// What is shown in the area at the bottom, as tabs.
 fn below() -> Vec<Section> {
-    vec![]
+    let mut plots = plots::Plots::default();
+    vec![section("plots", "Plots", "What happens over time", true, move |ui, desk| plots.show(ui, desk))]
 }
 
 /// All sections.
