@@ -65,7 +65,7 @@ impl Help {
 }
 
 /// Width of the names \[points\].
-const NAMES: f32 = 150.0;
+const NAMES: f32 = 232.0;
 
 fn table<'a>(ui: &mut egui::Ui, title: &str, lines: impl Iterator<Item = (&'a str, &'a str)>) {
     ui.strong(title);
