@@ -60,7 +60,8 @@ pub struct Core {
     origin: Arc<Still>,
     /// the world, and its rival where there is one
     pub(super) lanes: Vec<Lane>,
-    pub(super) rival: Option<Settings>,
+    /// the settings when a rival was asked for, and those it was to have
+    rival: Option<(Settings, Settings)>,
     pub(super) tape: Tape,
     pub(super) pace: Pace,
     pub(super) task: Task,
@@ -231,8 +232,18 @@ impl Core {
 
     /// Stands still from now on.
     pub(super) fn stand(&mut self) {
+        self.withdraw();
         self.pace.stop();
         self.task = Task::Stand;
+    }
+
+    /// A frame of which no step was made yet is not in progress.
+    fn withdraw(&mut self) {
+        // A world that has ended its frame is not to be waited for in vain.
+        let fresh = |lane: &Lane| lane.machine.is_inside() && lane.machine.position().done == 0;
+        if self.restore.is_none() && self.lanes.iter().all(fresh) {
+            self.lanes.iter_mut().for_each(|lane| lane.machine.withdraw());
+        }
     }
 
     /// One more frame or step, beside those that were asked for already and are not made yet.
@@ -296,6 +307,7 @@ impl Core {
 
     /// Changes the worlds, here and now.
     fn do_deed(&mut self, deed: Deed, structural: bool) {
+        self.withdraw();
         let here = self.position();
         let inside = self.is_inside();
         if let Deed::Change(change) = &deed
@@ -333,7 +345,7 @@ impl Core {
     }
 
     fn set_rival(&mut self, settings: Option<Settings>) {
-        self.rival = settings;
+        self.rival = settings.map(|wanted| (self.loaded().world.settings().clone(), wanted));
         self.trouble = None;
         self.fork();
         self.listen();
@@ -344,8 +356,8 @@ impl Core {
         self.lanes.truncate(1);
         self.tape.end_rival();
         (self.agrees, self.is_unasked) = (None, true);
-        let Some(settings) = &self.rival else { return };
-        match self.lanes[0].machine.rival(settings) {
+        let Some((common, wanted)) = &self.rival else { return };
+        match self.lanes[0].machine.rival(common, wanted) {
             Ok(mut machine) => {
                 self.tape.begin_rival(&mut machine);
                 let stage = self.lanes[0].stage.clone();
