@@ -98,6 +98,7 @@ pub struct RunArgs {
 
 /// Options of `view`.
 #[derive(Args, Clone, Debug, Default)]
+#[cfg_attr(not(feature = "testbed"), allow(dead_code))]
 pub struct ViewArgs {
     /// A scene file, or the name of a gallery scene; without it, the gallery
     pub scene: Option<OsString>,

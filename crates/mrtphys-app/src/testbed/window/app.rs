@@ -156,6 +156,7 @@ impl Testbed {
                 self.desk.replace(session, opened.origin.name(), path);
                 if opened.again {
                     self.desk.camera = camera;
+                    self.desk.say(format!("{}: read again", opened.origin.name()));
                 }
                 if running || !opened.again {
                     self.desk.send(Command::Go(true));
@@ -294,8 +295,8 @@ impl Testbed {
         egui::Panel::bottom("transport").exact_size(38.0).show(ui, |ui| self.transport.show(ui, &mut self.desk));
         if self.side_panel {
             egui::Panel::right("panel")
-                .default_size(318.0)
-                .size_range(270.0..=520.0)
+                .default_size(300.0)
+                .size_range(290.0..=520.0)
                 .show(ui, |ui| self.panel.show(ui, &mut self.desk));
         }
         if self.below && self.panel.has_below() {

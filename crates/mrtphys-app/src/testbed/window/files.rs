@@ -212,6 +212,7 @@ impl Dialog {
             let field = ui.add(egui::TextEdit::singleline(&mut self.name).desired_width(width));
             let field = field.on_hover_text("A name in this folder, or a whole path");
             probes.mark("files.name", &field);
+            probes.say(|| "files.name".into(), &self.name);
             enter = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
             if std::mem::take(&mut self.fresh) {
                 field.request_focus();

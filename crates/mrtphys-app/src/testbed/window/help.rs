@@ -58,44 +58,53 @@ impl Help {
     }
 }
 
-fn table<'a>(ui: &mut egui::Ui, id: &str, title: &str, lines: impl Iterator<Item = (&'a str, &'a str)>) {
+/// Width of the names \[points\].
+const NAMES: f32 = 150.0;
+
+fn table<'a>(ui: &mut egui::Ui, title: &str, lines: impl Iterator<Item = (&'a str, &'a str)>) {
     ui.strong(title);
-    egui::Grid::new(id).num_columns(2).striped(true).min_col_width(150.0).max_col_width(360.0).show(ui, |ui| {
-        for (name, text) in lines {
-            ui.label(name);
-            ui.add(egui::Label::new(text).wrap());
-            ui.end_row();
-        }
+    ui.add_space(2.0);
+    for (name, text) in lines {
+        line(ui, NAMES, name, text);
+    }
+    ui.add_space(12.0);
+}
+
+/// A name in a column of its own, and a text that wraps beside it.
+fn line(ui: &mut egui::Ui, width: f32, name: &str, text: &str) {
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().interact_size.y = 16.0;
+        let (left, _) = ui.allocate_exact_size(egui::vec2(width, 16.0), egui::Sense::hover());
+        let color = ui.visuals().strong_text_color();
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        ui.painter().text(left.left_center(), egui::Align2::LEFT_CENTER, name, font, color);
+        ui.add(egui::Label::new(text).wrap());
     });
-    ui.add_space(10.0);
 }
 
 fn help(ui: &mut egui::Ui) {
-    table(ui, "mouse", "Mouse, in the picture", MOUSE.into_iter());
-    table(ui, "keys", "Keys, unless a text is being typed", SHORTCUTS.iter().map(|s| (s.name, s.text)));
-    table(ui, "realtime", "Realtime", RealTime::ALL.into_iter().map(|(mode, name)| (name, meaning(mode))));
-    table(ui, "modes", "Shading", MODES.into_iter());
+    table(ui, "Mouse, in the picture", MOUSE.into_iter());
+    table(ui, "Keys, unless a text is being typed", SHORTCUTS.iter().map(|s| (s.name, s.text)));
+    table(ui, "Realtime", RealTime::ALL.into_iter().map(|(mode, name)| (name, meaning(mode))));
+    table(ui, "Shading", MODES.into_iter());
     ui.label("Every control says what it does when the mouse rests on it. The manual has the scene language, the physics and the files.");
 }
 
 fn about(ui: &mut egui::Ui, driver: &str) {
+    ui.set_max_width(420.0);
     ui.heading("mrtphys");
     ui.label("Rigid bodies that collide as physics says.");
     ui.add_space(6.0);
-    egui::Grid::new("about").num_columns(2).show(ui, |ui| {
-        let lines = [
-            ("Version", crate::cli::version()),
-            ("Precision", "double (IEEE 754, 64 bits); the same bits on every machine".into()),
-            ("Drawn by", driver.to_string()),
-            ("Licence", env!("CARGO_PKG_LICENSE").into()),
-            ("Source", env!("CARGO_PKG_REPOSITORY").into()),
-        ];
-        for (name, text) in lines {
-            ui.label(name);
-            ui.add(egui::Label::new(text).wrap());
-            ui.end_row();
-        }
-    });
+    let lines = [
+        ("Version", crate::cli::version()),
+        ("Precision", "double (IEEE 754, 64 bits); the same bits on every machine".into()),
+        ("Drawn by", driver.to_string()),
+        ("Licence", env!("CARGO_PKG_LICENSE").into()),
+        ("Source", env!("CARGO_PKG_REPOSITORY").into()),
+    ];
+    for (name, text) in lines {
+        line(ui, 80.0, name, &text);
+    }
     ui.add_space(6.0);
     ui.label("Grown from a thesis of 1998 on physically based animation of rigid bodies.");
 }

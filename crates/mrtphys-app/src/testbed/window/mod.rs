@@ -67,8 +67,8 @@ pub fn open(args: &ViewArgs) -> Outcome {
     let mut scene = setup::load(&name)?;
     let changes = changes_of(args);
     changes(&mut scene);
-    check_display()?;
     let snapshot = read_snapshot(args, &scene)?;
+    check_display()?;
     let origin = origin_of(&name);
     let [gallery, paused, status] = [args.scene.is_none(), args.paused, args.status.is_some()];
     let status = args.status.clone().filter(|_| status);

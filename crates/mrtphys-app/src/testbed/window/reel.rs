@@ -161,7 +161,7 @@ fn place(times: &[f64], time: f64) -> (usize, f64) {
 }
 
 /// The folders' and files' endings that a film can have, with what they are called.
-pub const FILM_KINDS: [(&str, &str); 3] = [("mp4", "MP4 (H.264)"), ("gif", "GIF"), ("", "folder of PNG pictures")];
+pub const FILM_KINDS: [(&str, &str); 3] = [("mp4", "MP4 (H.264)"), ("gif", "GIF"), ("", "PNG folder")];
 
 #[cfg(test)]
 mod tests {

@@ -55,7 +55,7 @@ impl Transport {
                 let hint = "Seconds of animation time for a second of real time (panel: Animation)";
                 fixed(ui, 66.0, &speed).on_hover_text(hint);
                 let hint = "Time code: hours h: minutes ': seconds \": frames f of animation time";
-                let code_shown = fixed(ui, 136.0, &code).on_hover_text(hint);
+                let code_shown = fixed(ui, 168.0, &code).on_hover_text(hint);
                 desk.probes.mark("transport.code", &code_shown);
                 desk.probes.say(|| "transport.code".into(), &code);
                 let now = Instant::now();
@@ -81,7 +81,7 @@ fn fixed(ui: &mut egui::Ui, width: f32, text: &str) -> egui::Response {
 /// A slider over the frames of the recording that fills the line.
 fn scrub(ui: &mut egui::Ui, at: &mut u64, first: u64, last: u64) -> egui::Response {
     ui.spacing_mut().slider_width = (ui.available_width() - 8.0).max(40.0);
-    let slider = egui::Slider::new(at, first..=last.max(first)).show_value(false).trailing_fill(true);
+    let slider = egui::Slider::new(at, first..=last.max(first + 1)).show_value(false).trailing_fill(true);
     ui.add_enabled(last > first, slider)
 }
 

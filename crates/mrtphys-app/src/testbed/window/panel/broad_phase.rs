@@ -4,6 +4,7 @@ use crate::testbed::session::{Command, Numbers};
 use crate::testbed::window::desk::Desk;
 use crate::testbed::window::format::count;
 use crate::testbed::window::pending::Pending;
+use crate::testbed::window::table::columns;
 use eframe::egui;
 use mrtphys::def::{Algorithm, Settings};
 use mrtphys::{BroadPhaseKind, World};
@@ -208,27 +209,24 @@ fn counted(n: &Numbers) -> Vec<(&'static str, u64, u64, &'static str)> {
     lines.into_iter().chain(rare).collect()
 }
 
+/// Widths of the columns \[points\].
+const STEP: f32 = 76.0;
+const TOTAL: f32 = 108.0;
+
 fn counts(ui: &mut egui::Ui, numbers: &Numbers, desk: &mut Desk) {
-    let mono = |text: String| egui::RichText::new(text).monospace();
-    egui::Grid::new("counts").num_columns(3).striped(true).min_col_width(64.0).show(ui, |ui| {
-        ui.weak("");
-        for (title, hint) in [("last step", "Counts of the last physical step"), ("total", "Counts since the start")] {
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                ui.weak(title).on_hover_text(hint);
-            });
+    let head = |text: &str| egui::RichText::new(text).weak();
+    let hint = "Counts of the last physical step, and since the start";
+    let gap = ui.spacing_mut().item_spacing.y;
+    ui.spacing_mut().item_spacing.y = 3.0;
+    columns(ui, head(""), &[(head("last step"), STEP), (head("total"), TOTAL)], hint);
+    for (name, step, total, hint) in counted(numbers) {
+        let value = |n: u64| egui::RichText::new(count(n)).monospace();
+        for (n, what) in [(step, "step"), (total, "total")] {
+            desk.probes.say(|| format!("acceleration.{name}.{what}"), &count(n));
         }
-        ui.end_row();
-        for (name, step, total, hint) in counted(numbers) {
-            ui.label(name).on_hover_text(hint);
-            for (n, what) in [(step, "step"), (total, "total")] {
-                desk.probes.say(|| format!("acceleration.{name}.{what}"), &count(n));
-                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    ui.label(mono(count(n))).on_hover_text(hint);
-                });
-            }
-            ui.end_row();
-        }
-    });
+        columns(ui, egui::RichText::new(name), &[(value(step), STEP), (value(total), TOTAL)], hint);
+    }
+    ui.spacing_mut().item_spacing.y = gap;
 }
 
 #[cfg(test)]
