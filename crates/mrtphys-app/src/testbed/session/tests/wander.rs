@@ -14,7 +14,7 @@ fn any_commands_in_any_order_can_be_gone_back_on() {
 fn wander(seed: u64, commands: usize) {
     let watch = Watch::new();
     let mut random = mrtphys_scene::Random::new(seed);
-    let budget = if seed % 2 == 0 { 60 << 10 } else { 8 << 20 };
+    let budget = if seed.is_multiple_of(2) { 60 << 10 } else { 8 << 20 };
     let mut b =
         Bench { core: Core::with_budget(scene("thesis/cube-2").build().unwrap(), watch.clock(), budget), watch };
     let mut known = std::collections::BTreeMap::from([(0, b.hash())]);
@@ -52,7 +52,7 @@ fn wander(seed: u64, commands: usize) {
             13 => {
                 let settings = b.core.loaded().world.settings().clone();
                 let rival = Settings { broad_phase: BroadPhaseKind::BruteForce, ..settings };
-                b.send(Command::Rival((random.bits() % 3 > 0).then_some(rival)));
+                b.send(Command::Rival((!random.bits().is_multiple_of(3)).then_some(rival)));
             }
             _ => {
                 let (first, last) = b.core.tape.range();
