@@ -1,8 +1,9 @@
 //! What bodies wear at run time: colors that show a quantity, and an outline.
 
 use crate::palette::{FIXED, Rgb, Theme, default_color};
+use crate::poses::Poses;
 use crate::scale::round_up;
-use crate::stage::{Poses, Stage};
+use crate::stage::Stage;
 use mrtphys::{Real, Vec3};
 
 /// What the colors of bodies show.
@@ -114,7 +115,12 @@ pub(crate) struct Paint<'a> {
     dress: Dress<'a>,
     theme: Theme,
     most: Real,
+    /// colors at even distances from 0 to `most`
+    ramp: [Rgb; RAMP],
 }
+
+/// Colors that bodies have: steps too small to be seen.
+const RAMP: usize = 256;
 
 impl<'a> Paint<'a> {
     /// Looks for the largest value. Where what the coloring needs is not there, every body has its own color.
@@ -126,7 +132,8 @@ impl<'a> Paint<'a> {
         {
             dress.coloring = Coloring::Own;
         }
-        let mut paint = Paint { stage, poses, dress, theme, most: 1.0 };
+        let ramp = std::array::from_fn(|i| theme.ramp(i as Real / (RAMP - 1) as Real));
+        let mut paint = Paint { stage, poses, dress, theme, most: 1.0, ramp };
         let given = dress.most.filter(|m| *m > 0.0 && m.is_finite());
         paint.most = given.unwrap_or_else(|| round_up((0..n).filter_map(|i| paint.value(i)).fold(0.0, Real::max)));
         paint
@@ -154,7 +161,11 @@ impl<'a> Paint<'a> {
         match self.dress.coloring {
             Coloring::Own => self.stage.color(i),
             Coloring::Kind => default_color(self.stage.kind(i), self.stage.is_fixed(i)),
-            _ => self.value(i).map_or(FIXED, |v| self.theme.ramp(v / self.most)),
+            // The conversion saturates.
+            _ => self.value(i).map_or(FIXED, |v| {
+                let step = (v / self.most * (RAMP - 1) as Real + 0.5) as usize;
+                self.ramp[step.min(RAMP - 1)]
+            }),
         }
     }
 
@@ -227,7 +238,7 @@ fixed = true
         let world = loaded().world;
         let energy = world.body(world.bodies().nth(1).unwrap()).unwrap().rotational_energy();
         let top = round_up(energy.max(loaded().world.energy().linear));
-        let part = |x: Real| opaque(Theme::Light.ramp(x));
+        let part = |x: Real| opaque(Theme::Light.ramp((x * 255.0).round() / 255.0));
         for (coloring, max, right) in [
             (Coloring::Speed, 5.0, [part(1.0), part(0.0), opaque(FIXED)]),
             (Coloring::Spin, 5.0, [part(0.0), part(0.6), opaque(FIXED)]),

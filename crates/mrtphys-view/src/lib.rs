@@ -29,6 +29,7 @@ pub mod explain;
 mod walls;
 mod dress;
 mod pick;
+mod poses;
 mod stage;
 
 // How it is drawn.
@@ -55,9 +56,11 @@ pub use film::Film;
 pub use frame::{Frame, Illumination, Light, Look, Mode, Quality};
 pub use gpu::Gpu;
 pub use image::Image;
+pub use lists::Sorting;
 pub use overlay::Overlay;
 pub use palette::Theme;
 pub use pick::Hit;
+pub use poses::Poses;
 pub use renderer::Renderer;
 pub use scale::Scale;
-pub use stage::{Poses, Stage, frame_of};
+pub use stage::{Stage, frame_of};

@@ -6,6 +6,7 @@ use crate::frame::{Batch, Frame, Highlighted, Instance, Light, Look, Wall};
 use crate::mesh::Mesh;
 use crate::palette::{Rgb, default_color, varied};
 use crate::pick::{self, Hit};
+use crate::poses::Poses;
 use crate::walls;
 use mrtphys::bounds::{Aabb, Ball};
 use mrtphys::contact::Other;
@@ -39,33 +40,6 @@ struct Actor {
     /// mass \[kg\]
     mass: Real,
     inertia: Inertia,
-}
-
-/// Positions and orientations of the bodies of a stage, in its order: the state that a picture shows.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Poses {
-    /// centres of mass \[m\]
-    pub positions: Vec<Vec3>,
-    /// orientations
-    pub orientations: Vec<Quat>,
-}
-
-impl Poses {
-    /// The state between two, `part` of the way from `a` to `b`: positions along the straight line, orientations along the
-    /// shorter way round.
-    pub fn set_between(&mut self, a: &Poses, b: &Poses, part: Real) {
-        self.positions.clear();
-        self.orientations.clear();
-        self.positions.extend(a.positions.iter().zip(&b.positions).map(|(p, q)| *p + (*q - *p) * part));
-        self.orientations.extend(a.orientations.iter().zip(&b.orientations).map(|(p, q)| between(*p, *q, part)));
-    }
-}
-
-/// Normalized linear interpolation: for the small angles between two steps the same as the great circle to third order.
-fn between(a: Quat, b: Quat, part: Real) -> Quat {
-    let sign = if a.dot(b) < 0.0 { -1.0 } else { 1.0 };
-    let mix = |x: Real, y: Real| x * (1.0 - part) + sign * y * part;
-    Quat::new(mix(a.x, b.x), mix(a.y, b.y), mix(a.z, b.z), mix(a.w, b.w)).try_normalize().unwrap_or(b)
 }
 
 /// What the bodies and boundaries of a world look like. Made once for a scene, and again when bodies come or go.
@@ -459,22 +433,6 @@ mod tests {
     }
 
     #[test]
-    fn what_is_between_two_states_is_halfway() {
-        let quarter = Quat::from_axis_angle(Vec3::Y, 0.5);
-        let minus = Quat::new(-quarter.x, -quarter.y, -quarter.z, -quarter.w);
-        let a = Poses { positions: vec![Vec3::ZERO], orientations: vec![Quat::IDENTITY] };
-        let mut c = Poses::default();
-        for q in [quarter, minus] {
-            let b = Poses { positions: vec![Vec3::X * 4.0], orientations: vec![q] };
-            c.set_between(&a, &b, 0.5);
-            assert_eq!(c.positions[0], Vec3::X * 2.0);
-            assert!(c.orientations[0].dot(Quat::from_axis_angle(Vec3::Y, 0.25)) > 1.0 - 1e-12);
-            c.set_between(&a, &b, 0.0);
-            assert_eq!(c, a);
-        }
-    }
-
-    #[test]
     fn filling_again_allocates_no_new_lists() {
         let loaded = loaded(mrtphys_scene::gallery_scene("thesis/cube-4").unwrap());
         let stage = Stage::new(&loaded);
@@ -489,6 +447,34 @@ mod tests {
         stage.read(&loaded.world, &mut poses);
         stage.fill(stage.camera(), Look::default(), &poses, &mut frame);
         assert_eq!(before, places(&frame, &poses));
+    }
+
+    #[test]
+    fn contacts_are_counted_for_the_bodies_that_have_them_wherever_they_are_stored() {
+        let mut loaded = loaded(mrtphys_scene::gallery_scene("thesis/cube-4").unwrap());
+        let stage = Stage::new(&loaded);
+        let mut counts = Vec::new();
+        let mut seen = 0;
+        for _ in 0..60 {
+            loaded.world.sort_storage();
+            loaded.world.frame().unwrap();
+            stage.count_contacts(&loaded.world, &mut counts);
+            let list = &loaded.world.contacts().list;
+            let sides = list.iter().map(|c| if matches!(c.b, Other::Body(_)) { 2 } else { 1 });
+            assert_eq!(counts.iter().sum::<u32>(), sides.sum::<u32>());
+            for contact in list {
+                // The point lies on the body that is said to touch there.
+                let id = loaded.world.body_in_slot(contact.a).unwrap();
+                let i = stage.index(id).unwrap();
+                assert!(counts[i] > 0 && stage.body(i) == Some(id));
+                let distance = (loaded.world.pose(id).unwrap().0 - contact.point).length();
+                assert!(distance < 1.2 * stage.reach(i), "{distance} of {}", stage.reach(i));
+                seen += 1;
+            }
+        }
+        assert!(seen > 20, "{seen}");
+        assert_eq!(loaded.world.body_in_slot(u32::MAX), None);
+        assert_eq!((stage.index(BodyId::from_parts(0, 9, 9)), stage.body(9999)), (None, None));
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! Drawings that explain what happens: contacts, impulses, velocities, bounds, cells, trails, and the hand's spring.
 //!
-//! A [`Pen`] is made for each picture and draws plain data into an [`Overlay`]. Lengths are relative to what the picture shows,
-//! or to the scene where that is smaller; widths are in pixels and grow with high pictures. Colors are those of Okabe and Ito,
-//! which people with any kind of color vision tell apart, on light as on dark.
+//! A [`Pen`] is made for each picture and draws plain data into an [`Overlay`]. Lengths are relative to the scene, or to what the
+//! picture shows of it; widths are in pixels and grow with high pictures. Colors have the hues of Okabe and Ito, which people with
+//! any kind of color vision tell apart, darker on light and lighter on dark.
 //!
 //! Each method draws with at most [`Pen::lines`] lines, and tells how many of how many it drew: a window is to say so where that
 //! is less than all. Unless a method says otherwise those drawn are spread evenly over all.
@@ -35,6 +35,8 @@ impl Drawn {
 
 /// Most lines that a method of a pen draws with, unless told otherwise.
 pub const LINES: usize = 60_000;
+/// Lengths are relative to the scene's diagonal, but to no less than this part of what is seen, and no more than all of it.
+const LEAST: Real = 0.5;
 /// The longest arrow, relative to what is seen.
 const LONGEST: Real = 0.15;
 /// The length of a contact's normal, relative to what is seen.
@@ -115,7 +117,7 @@ impl Pen {
         let seen = 2.0 * camera.distance() * camera.tan_half_fov();
         let diagonal = (bounds.max - bounds.min).length();
         let known = diagonal > 0.0 && diagonal.is_finite();
-        let length = if known { seen.min(diagonal) } else { seen };
+        let length = if known { diagonal.clamp(LEAST * seen, seen) } else { seen };
         let middle = if known { (bounds.min + bounds.max) * 0.5 } else { camera.look_at };
         let around = Vec3::splat(REGION * if known { diagonal } else { seen });
         Pen {
@@ -197,8 +199,10 @@ mod tests {
     #[test]
     fn lengths_are_those_of_what_is_seen_or_of_a_smaller_scene() {
         let seen = 20.0 * 22.5f64.to_radians().tan();
-        assert!((pen().length - 12f64.sqrt()).abs() < 1e-12);
+        assert!((pen().length - 0.5 * seen).abs() < 1e-12, "a small scene in a large picture");
         let camera = Camera { eye: Vec3::Z * 10.0, look_at: Vec3::ZERO, up: Vec3::Y, fov_deg: 45.0 };
+        let middling = Aabb { min: Vec3::splat(-2.0), max: Vec3::splat(2.0) };
+        assert!((Pen::new(&camera, &middling, Theme::Dark, 100).length - 48f64.sqrt()).abs() < 1e-12);
         for bounds in [Aabb { min: Vec3::splat(-1e3), max: Vec3::splat(1e3) }, Aabb::EVERYWHERE, Aabb::EMPTY] {
             assert!((Pen::new(&camera, &bounds, Theme::Dark, 100).length - seen).abs() < 1e-9);
         }

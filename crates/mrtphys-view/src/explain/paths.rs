@@ -2,7 +2,8 @@
 
 use super::{Drawn, Pen, opaque, spread};
 use crate::overlay::{Line, Overlay};
-use crate::stage::{Poses, Stage};
+use crate::poses::Poses;
+use crate::stage::Stage;
 use mrtphys::{Real, Vec3};
 use std::borrow::Borrow;
 

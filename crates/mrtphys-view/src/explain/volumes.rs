@@ -3,7 +3,8 @@
 use super::{Drawn, Pen, opaque, spread};
 use crate::dress::Legend;
 use crate::overlay::{Block, Bubble, Overlay};
-use crate::stage::{Poses, Stage};
+use crate::poses::Poses;
+use crate::stage::Stage;
 use mrtphys::bounds::Aabb;
 use mrtphys::broad::Cell;
 use mrtphys::math::Quat;

@@ -12,6 +12,8 @@ use std::time::Duration;
 
 /// Distance from the edges [points].
 const EDGE: f32 = 8.0;
+/// What is below the buttons at the top [points].
+const BELOW_TOOLS: f32 = 38.0;
 
 /// Text on a plate, so that it can be read on any picture; the plate's rectangle.
 fn plate(ui: &Ui, anchor: Align2, at: egui::Pos2, text: &str, within: Rect) -> Rect {
@@ -52,7 +54,7 @@ pub fn side(ui: &Ui, report: &Report, pane: Pane) {
     let Some(side) = report.sides.get(pane.side) else { return };
     let title = if pane.side == 0 { "World" } else { "Rival" };
     let text = format!("{title}: {}\n{}", settings(&side.numbers), costs(&side.numbers));
-    plate(ui, Align2::LEFT_TOP, pane.rect.min + egui::vec2(EDGE, EDGE), &text, pane.rect);
+    plate(ui, Align2::LEFT_TOP, pane.rect.min + egui::vec2(EDGE, BELOW_TOOLS), &text, pane.rect);
     if pane.side == 1
         && let Some(agrees) = report.rival_agrees
     {
@@ -188,7 +190,7 @@ mod tests {
     fn costs_are_those_of_a_step() {
         let mut numbers = Numbers { cost: Duration::from_millis(16), ..Numbers::default() };
         numbers.counters = Counters { sphere_tests: 133_888, detect_calls: 2088, ..Counters::default() };
-        assert_eq!(costs(&numbers), "2 ms a step, 133 888 sphere tests, 2 088 detect calls");
+        assert_eq!(costs(&numbers), "2.00 ms a step, 133 888 sphere tests, 2 088 detect calls");
         numbers.stages = vec![("move", Duration::from_micros(40)), ("find", Duration::from_micros(60))];
         assert_eq!(step_time(&numbers), 1e-4);
     }

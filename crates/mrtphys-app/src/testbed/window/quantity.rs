@@ -73,7 +73,7 @@ fn end_of_number(text: &str) -> usize {
     let bytes = text.as_bytes();
     let belongs = |i: usize| match bytes[i] {
         b'0'..=b'9' | b'+' | b'-' | b'.' | b'/' | b' ' => true,
-        b'e' | b'E' => i > 0 && bytes[i - 1].is_ascii_digit() || i > 0 && bytes[i - 1] == b'.',
+        b'e' | b'E' => i > 0 && matches!(bytes[i - 1], b'0'..=b'9' | b'.'),
         _ => false,
     };
     let end = (0..bytes.len()).find(|&i| !belongs(i)).unwrap_or(bytes.len());

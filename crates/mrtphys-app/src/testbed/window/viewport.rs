@@ -90,7 +90,7 @@ impl Pane {
     }
 
     /// A place on the screen from the middle of the picture, in its heights.
-    fn from_middle(&self, at: egui::Pos2) -> (f64, f64) {
+    fn off_middle(&self, at: egui::Pos2) -> (f64, f64) {
         let d = at - self.rect.center();
         let height = self.rect.height().max(1.0);
         (f64::from(d.x / height), f64::from(d.y / height))
@@ -266,7 +266,7 @@ impl Viewport {
         let by = f64::from(scroll) / 400.0 + f64::from(zoom).ln() / 2.0;
         if by != 0.0 && by.is_finite() {
             let pane = pane_at(at);
-            mouse::approach(&mut desk.camera, by, pane.from_middle(at));
+            mouse::approach(&mut desk.camera, by, pane.off_middle(at));
         }
     }
 
@@ -466,7 +466,7 @@ mod tests {
         let at = egui::pos2(210.0, 120.0);
         assert_eq!(pane.part(at), (0.25, 0.25));
         assert_eq!(pane.screen((0.25, 0.25)), at);
-        assert_eq!(pane.from_middle(at), (-0.5, -0.25));
+        assert_eq!(pane.off_middle(at), (-0.5, -0.25));
         assert_eq!(pane.aspect(), 2.0);
     }
 

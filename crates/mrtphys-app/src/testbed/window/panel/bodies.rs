@@ -231,19 +231,19 @@ impl Form {
                 let added = ui.button("Add").on_hover_text(hint);
                 desk.probes.mark("add-body", &added);
                 if added.clicked() {
-                    self.changed = Some(desk.report().number);
+                    self.changed = Some(desk.report().troubles);
                     desk.session.edit(true, move |loaded| making::add(loaded, &pattern, near).map(drop));
                 }
                 let hint =
                     "shoots the body from the eye along the middle line of sight, from where that enters the walls (B)";
                 if ui.button("Throw from the eye").on_hover_text(hint).clicked() {
-                    self.changed = Some(desk.report().number);
+                    self.changed = Some(desk.report().troubles);
                     let speed = self.speed.unwrap_or(short_speed(camera.distance()));
                     throw(desk, pattern, speed);
                 }
             });
         });
-        let trouble = self.changed.filter(|n| desk.report().number > *n).and(desk.report().trouble.clone());
+        let trouble = self.changed.filter(|n| desk.report().troubles > *n).and(desk.report().trouble.clone());
         if let Some(text) = complaint.map(str::to_string).or(trouble) {
             ui.colored_label(ui.visuals().error_fg_color, text);
         }

@@ -19,7 +19,7 @@ pub struct Body {
     push: Option<(BodyId, Real)>,
     /// the last finite mass of a body that was fixed here \[kg\]
     freed: Option<(BodyId, Real)>,
-    /// the report with which the last change was sent
+    /// how much had gone wrong when the last change was sent
     changed: Option<u64>,
 }
 
@@ -31,6 +31,7 @@ impl Body {
         let Some((id, name, body)) = body else {
             let text = match desk.selected {
                 None => "Click a body in the picture or in the list to see and change its properties.",
+                Some(id) if side.shot.stage.index(id).is_none() => "This body is there no more.",
                 Some(_) => "...",
             };
             ui.label(egui::RichText::new(text).weak());
@@ -58,13 +59,13 @@ impl Body {
 
     /// Changes the world, and remembers when.
     fn edit(&mut self, desk: &Desk, looks: bool, change: impl Fn(&mut World) -> mrtphys::Result<()> + Send + 'static) {
-        self.changed = Some(desk.report().number);
+        self.changed = Some(desk.report().troubles);
         desk.session.edit(looks, move |loaded| change(&mut loaded.world).map_err(|e| e.to_string()));
     }
 
     /// What was wrong with the last change.
     fn complaint(&self, ui: &mut egui::Ui, desk: &Desk) {
-        let after = |n: u64| desk.report().number > n;
+        let after = |n: u64| desk.report().troubles > n;
         if let Some(trouble) = desk.report().trouble.as_ref().filter(|_| self.changed.is_some_and(after)) {
             ui.colored_label(ui.visuals().error_fg_color, trouble);
         }
@@ -195,7 +196,7 @@ impl Body {
             let mut rgb = stage.index(id).map_or([128; 3], |i| stage.color(i));
             let hint = "color in the picture; in a lattice, of all bodies of the same kind";
             if ui.color_edit_button_srgb(&mut rgb).on_hover_text(hint).changed() {
-                self.changed = Some(desk.report().number);
+                self.changed = Some(desk.report().troubles);
                 desk.session.edit(true, move |loaded| making::paint(loaded, id, rgb));
             }
             ui.checkbox(&mut desk.seeing.follow, "Follow").on_hover_text("the camera moves with this body (L)");
@@ -214,7 +215,7 @@ impl Body {
                 crate::testbed::window::mouse::look_at_ball(&mut desk.camera, body.position, ball.radius);
             }
             if ui.button("Duplicate").on_hover_text("another body like this one, beside it").clicked() {
-                self.changed = Some(desk.report().number);
+                self.changed = Some(desk.report().troubles);
                 desk.session.edit(true, move |loaded| making::duplicate(loaded, id).map(drop));
             }
             if ui.button("Delete").on_hover_text("removes this body (Delete)").clicked() {
@@ -293,7 +294,7 @@ mod tests {
     fn orientations_are_read_as_they_are_shown() {
         let axes = [Vec3::X, Vec3::new(1.0, -2.0, 0.5), Vec3::new(-0.1, 0.2, 0.9)];
         for axis in axes {
-            for angle in [0.0, 1e-12, 1e-4, 0.5, 3.0, 3.14, 4.0, 6.2] {
+            for angle in [0.0, 1e-12, 1e-4, 0.5, 3.0, 3.1, 4.0, 6.2] {
                 let n = axis.try_normalize().unwrap();
                 let q = Quat::from_axis_angle(n, angle);
                 let v = rotation_vector(q);

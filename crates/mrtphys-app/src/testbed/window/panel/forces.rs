@@ -39,7 +39,7 @@ impl Forces {
         ui.add_space(4.0);
         self.look(ui, desk);
         self.fields(ui, desk);
-        let trouble = self.changed.filter(|n| desk.report().number > *n).and(desk.report().trouble.clone());
+        let trouble = self.changed.filter(|n| desk.report().troubles > *n).and(desk.report().trouble.clone());
         if let Some(text) = trouble {
             ui.colored_label(ui.visuals().error_fg_color, text);
         }
@@ -50,7 +50,7 @@ impl Forces {
         desk: &Desk,
         change: impl Fn(&mut mrtphys_scene::Loaded) -> Result<(), String> + Send + 'static,
     ) {
-        self.changed = Some(desk.report().number);
+        self.changed = Some(desk.report().troubles);
         desk.session.edit(false, change);
     }
 

@@ -66,7 +66,7 @@ fn parts(mode: Mode) -> (Rendering, Option<Shading>) {
 fn place(quality: Quality) -> u8 {
     match quality {
         Quality::Auto => 0,
-        Quality::Level(level) => level.min(FINEST as u8) + 1,
+        Quality::Level(level) => level.min(FINEST) + 1,
     }
 }
 
@@ -117,7 +117,7 @@ impl Render {
             ui.end_row();
             ui.label("Triangulation").on_hover_text("how finely spheres are triangulated");
             let mut slider = place(desk.look.quality);
-            let widget = egui::Slider::new(&mut slider, 0..=FINEST as u8 + 1)
+            let widget = egui::Slider::new(&mut slider, 0..=FINEST + 1)
                 .custom_formatter(|x, _| meaning(x as u8))
                 .custom_parser(|text| text.parse().ok());
             let hint = "automatic: as finely as its size in the picture needs to look round; else all spheres alike";
@@ -187,7 +187,7 @@ mod tests {
 
     #[test]
     fn the_slider_has_a_place_for_every_quality() {
-        for p in 0..=FINEST as u8 + 1 {
+        for p in 0..=FINEST + 1 {
             assert_eq!(place(quality(p)), p);
         }
         assert_eq!(

@@ -40,7 +40,7 @@ impl Chart {
         (Chart::Ledger, "Ledger", "J", "where every joule went, by cause; the residual is what no cause accounts for"),
         (Chart::Drift, "Drift", "|E/E0 - 1|", "relative change of the total energy since the start, in powers of ten"),
         (Chart::Momentum, "Momentum", "Ns", "momentum of all bodies together"),
-        (Chart::AngularMomentum, "Angular momentum", "Js", "angular momentum of all bodies about the origin"),
+        (Chart::AngularMomentum, "Ang. momentum", "Js", "angular momentum of all bodies about the origin"),
         (Chart::Counters, "Tests", "per step", "bounding-sphere tests, detect calls and contacts in a step"),
         (
             Chart::Impacts,
@@ -79,12 +79,15 @@ pub struct Curve {
 /// Smallest deviation that is told from none: a double has no smaller relative step.
 const FINEST: f64 = 1e-17;
 
+/// A curve of the moments that have a value.
+fn curve(moments: &[Moment], name: &'static str, color: usize, value: &dyn Fn(&Moment) -> Option<f64>) -> Curve {
+    let point = |m: &Moment| value(m).filter(|y| y.is_finite()).map(|y| [m.time, y]);
+    Curve { name, color, dashed: false, points: moments.iter().filter_map(point).collect() }
+}
+
 /// The curves of a chart. Moments without a value are left out.
 pub fn curves(chart: Chart, moments: &[Moment], gas: Option<&Gas>) -> Vec<Curve> {
-    let of = |name: &'static str, color: usize, value: &dyn Fn(&Moment) -> Option<f64>| {
-        let point = |m: &Moment| value(m).filter(|y| y.is_finite()).map(|y| [m.time, y]);
-        Curve { name, color, dashed: false, points: moments.iter().filter_map(point).collect() }
-    };
+    let of = |name, color, value: &dyn Fn(&Moment) -> Option<f64>| curve(moments, name, color, value);
     match chart {
         Chart::Energy => vec![
             of("linear", 0, &|m| Some(m.energy.linear)),
@@ -92,7 +95,7 @@ pub fn curves(chart: Chart, moments: &[Moment], gas: Option<&Gas>) -> Vec<Curve>
             of("potential", 2, &|m| Some(m.energy.potential)),
             of("total", 3, &|m| Some(m.energy.total())),
         ],
-        Chart::Ledger => ledger(moments, &of),
+        Chart::Ledger => ledger(moments),
         Chart::Drift => vec![of("energy", 3, &|m| drift(m).map(|d| d.abs().max(FINEST).log10()))],
         Chart::Momentum => vec![
             of("x", 3, &|m| Some(m.momentum.x)),
@@ -127,10 +130,8 @@ pub fn curves(chart: Chart, moments: &[Moment], gas: Option<&Gas>) -> Vec<Curve>
 }
 
 /// The entries that are not always zero, and what they leave unexplained.
-fn ledger(
-    moments: &[Moment],
-    of: &dyn Fn(&'static str, usize, &dyn Fn(&Moment) -> Option<f64>) -> Curve,
-) -> Vec<Curve> {
+fn ledger(moments: &[Moment]) -> Vec<Curve> {
+    let of = |name, color, value: &dyn Fn(&Moment) -> Option<f64>| curve(moments, name, color, value);
     let entries = Ledger::default().entries();
     let mut all: Vec<Curve> = (0..entries.len())
         .filter(|&i| moments.iter().any(|m| m.ledger.entries()[i].1 != 0.0))
@@ -192,21 +193,21 @@ mod tests {
         }
     }
 
-    fn curve(chart: Chart, name: &str) -> Vec<[f64; 2]> {
+    fn points(chart: Chart, name: &str) -> Vec<[f64; 2]> {
         let moments = [moment(0.5, 10.0), moment(1.0, 12.5)];
         curves(chart, &moments, None).into_iter().find(|c| c.name == name).map(|c| c.points).unwrap_or_default()
     }
 
     #[test]
     fn curves_have_the_values_that_they_name() {
-        assert_eq!(curve(Chart::Energy, "total"), [[0.5, 10.0], [1.0, 12.5]]);
-        assert_eq!(curve(Chart::Ledger, "user"), [[0.5, 2.0], [1.0, 2.0]]);
-        assert_eq!(curve(Chart::Ledger, "residual"), [[0.5, -2.0], [1.0, 0.5]]);
-        assert_eq!(curve(Chart::Ledger, "friction"), [] as [[f64; 2]; 0], "an entry that is always zero is left out");
-        assert_eq!(curve(Chart::Counters, "sphere tests"), [[0.5, 25.0], [1.0, 25.0]]);
-        assert_eq!(curve(Chart::Impacts, "between bodies"), [[0.5, 16.0], [1.0, 16.0]]);
-        assert_eq!(curve(Chart::Impacts, "with walls"), [[0.5, 8.0], [1.0, 8.0]]);
-        let drift = curve(Chart::Drift, "energy");
+        assert_eq!(points(Chart::Energy, "total"), [[0.5, 10.0], [1.0, 12.5]]);
+        assert_eq!(points(Chart::Ledger, "user"), [[0.5, 2.0], [1.0, 2.0]]);
+        assert_eq!(points(Chart::Ledger, "residual"), [[0.5, -2.0], [1.0, 0.5]]);
+        assert_eq!(points(Chart::Ledger, "friction"), [] as [[f64; 2]; 0], "an entry that is always zero is left out");
+        assert_eq!(points(Chart::Counters, "sphere tests"), [[0.5, 25.0], [1.0, 25.0]]);
+        assert_eq!(points(Chart::Impacts, "between bodies"), [[0.5, 16.0], [1.0, 16.0]]);
+        assert_eq!(points(Chart::Impacts, "with walls"), [[0.5, 8.0], [1.0, 8.0]]);
+        let drift = points(Chart::Drift, "energy");
         assert!((drift[0][1] + 17.0).abs() < 1e-12 && (drift[1][1] - 0.25f64.log10()).abs() < 1e-12);
     }
 
