@@ -139,12 +139,43 @@ impl<'a> Window<'a> {
         self.xdotool(&["type", "--delay", "30", text]);
     }
 
+    /// Clicks a control that may be clicked more than once, until the panel says what follows: under load a window may still
+    /// have been on its way to its place.
+    #[track_caller]
+    pub fn click_until(&mut self, control: &str, part: f64, says: impl Fn(&Value) -> bool) -> Value {
+        for _ in 0..12 {
+            self.click_at(control, part);
+            if let Some(status) = self.soon(&says) {
+                return status;
+            }
+        }
+        self.until(control, says)
+    }
+
+    /// Waits a little until the panel says something.
+    fn soon(&mut self, says: impl Fn(&Value) -> bool) -> Option<Value> {
+        let start = Instant::now();
+        while start.elapsed() < Duration::from_secs(5) {
+            let status = self.status();
+            if says(&status) {
+                return Some(status);
+            }
+            std::thread::sleep(Duration::from_millis(50));
+        }
+        None
+    }
+
     /// Answers the dialog that asks for a file with a name in the folder of the scene.
     #[track_caller]
     pub fn name_file(&mut self, name: &str) {
-        self.click("files.name");
-        self.keys(&["ctrl+a"]);
-        self.type_text(name);
+        for _ in 0..12 {
+            self.click("files.name");
+            self.keys(&["ctrl+a"]);
+            self.type_text(name);
+            if self.soon(|s| s["says"]["files.name"] == name).is_some() {
+                break;
+            }
+        }
         self.until("the name", |s| s["says"]["files.name"] == name);
         self.keys(&["Return"]);
     }
@@ -183,7 +214,7 @@ impl<'a> Window<'a> {
         let (x, y) = self.place(control, part);
         self.move_to(x, y);
         self.xdotool(&["mousedown", "1"]);
-        std::thread::sleep(Duration::from_millis(200));
+        std::thread::sleep(Duration::from_millis(300));
         self.xdotool(&["mouseup", "1"]);
     }
 

@@ -4,12 +4,10 @@ use super::command::{Command, Grip, Question, Studio, Wish};
 use super::lane::Lane;
 use super::machine::{Deed, Machine, Position, Still};
 use super::pace::{Due, Pace, RealTime};
-use super::report::{Report, Timeline};
 use super::restore::Restore;
 use super::tape::{BUDGET, Tape};
 use mrtphys::def::Settings;
 use mrtphys_scene::Loaded;
-use mrtphys_view::Poses;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -56,11 +54,12 @@ pub enum News {
 /// A session without its thread.
 pub struct Core {
     pub(super) clock: Clock,
-    title: String,
+    pub(super) title: String,
     origin: Arc<Still>,
     /// the world, and its rival where there is one
     pub(super) lanes: Vec<Lane>,
-    pub(super) rival: Option<Settings>,
+    /// the settings when a rival was asked for, and those it was to have
+    rival: Option<(Settings, Settings)>,
     pub(super) tape: Tape,
     pub(super) pace: Pace,
     pub(super) task: Task,
@@ -69,19 +68,19 @@ pub struct Core {
     pub(super) queue: VecDeque<Command>,
     pub(super) wish: Wish,
     /// what the mouse holds
-    holding: Option<Grip>,
-    trouble: Option<String>,
-    troubles: u64,
-    number: u64,
+    pub(super) holding: Option<Grip>,
+    pub(super) trouble: Option<String>,
+    pub(super) troubles: u64,
+    pub(super) number: u64,
     pub(super) news: News,
     /// what looking at the worlds takes, and what was computed since that was last done
-    look_cost: Duration,
-    since_look: Duration,
-    stride: u64,
+    pub(super) look_cost: Duration,
+    pub(super) since_look: Duration,
+    pub(super) stride: u64,
     /// a deed was done at this frame, and its picture was not made again yet
-    edited: bool,
+    pub(super) edited: bool,
     /// whether the rival's state was the same when that was last asked, and whether anything happened since
-    agrees: Option<bool>,
+    pub(super) agrees: Option<bool>,
     pub(super) is_unasked: bool,
 }
 
@@ -231,8 +230,18 @@ impl Core {
 
     /// Stands still from now on.
     pub(super) fn stand(&mut self) {
+        self.withdraw();
         self.pace.stop();
         self.task = Task::Stand;
+    }
+
+    /// A frame of which no step was made yet is not in progress.
+    fn withdraw(&mut self) {
+        // A world that has ended its frame is not to be waited for in vain.
+        let fresh = |lane: &Lane| lane.machine.is_inside() && lane.machine.position().done == 0;
+        if self.restore.is_none() && self.lanes.iter().all(fresh) {
+            self.lanes.iter_mut().for_each(|lane| lane.machine.withdraw());
+        }
     }
 
     /// One more frame or step, beside those that were asked for already and are not made yet.
@@ -296,6 +305,7 @@ impl Core {
 
     /// Changes the worlds, here and now.
     fn do_deed(&mut self, deed: Deed, structural: bool) {
+        self.withdraw();
         let here = self.position();
         let inside = self.is_inside();
         if let Deed::Change(change) = &deed
@@ -333,7 +343,7 @@ impl Core {
     }
 
     fn set_rival(&mut self, settings: Option<Settings>) {
-        self.rival = settings;
+        self.rival = settings.map(|wanted| (self.loaded().world.settings().clone(), wanted));
         self.trouble = None;
         self.fork();
         self.listen();
@@ -344,8 +354,8 @@ impl Core {
         self.lanes.truncate(1);
         self.tape.end_rival();
         (self.agrees, self.is_unasked) = (None, true);
-        let Some(settings) = &self.rival else { return };
-        match self.lanes[0].machine.rival(settings) {
+        let Some((common, wanted)) = &self.rival else { return };
+        match self.lanes[0].machine.rival(common, wanted) {
             Ok(mut machine) => {
                 self.tape.begin_rival(&mut machine);
                 let stage = self.lanes[0].stage.clone();
@@ -465,93 +475,6 @@ impl Core {
             Task::Stand | Task::Step(_) | Task::Run => {}
         }
         self.news = if running { self.news.max(News::Frame) } else { News::Answer };
-    }
-
-    /// Makes the picture of a frame again whose bodies were changed, before it is left.
-    pub(super) fn look_again(&mut self) {
-        let worth_it = self.task != Task::Run || self.lanes.iter().any(|lane| lane.restage);
-        if self.edited && worth_it && !self.is_inside() {
-            self.look(false);
-        }
-        self.edited = false;
-    }
-
-    /// Looks at the worlds, and records what is seen if it is a whole frame.
-    pub(super) fn look(&mut self, follows: bool) {
-        let start = self.now();
-        let old = self.tape.shots().next_back().map(|s| s.tick);
-        let is_new = !self.lanes[0].is_seen;
-        self.lanes.iter_mut().filter(|lane| !lane.is_seen).for_each(|lane| lane.look(follows));
-        if is_new && !self.is_inside() {
-            self.tape.push(self.lanes[0].shot.clone());
-            let tick = self.position().tick;
-            // Nothing is learned from a frame that was gone back to, or looked at again.
-            self.stride = old.and_then(|old| tick.checked_sub(old)).filter(|&n| n > 0).unwrap_or(self.stride);
-        }
-        self.look_cost = self.now().saturating_duration_since(start);
-        self.since_look = Duration::ZERO;
-        self.edited = false;
-    }
-
-    /// Tells how things are.
-    pub fn report(&mut self) -> Report {
-        let inside = self.is_inside();
-        let may_look = self.restore.is_none() && (!inside || self.task == Task::Stand);
-        if may_look && self.lanes.iter().any(|lane| !lane.is_seen) {
-            self.look(false);
-            if self.task == Task::Stand {
-                self.pace.jump(self.now());
-            }
-        }
-        if may_look && !inside && self.is_unasked && self.lanes.len() > 1 {
-            let hash = |lane: &Lane| lane.machine.world().state_hash();
-            self.is_unasked = false;
-            self.agrees = Some(hash(&self.lanes[0]) == hash(&self.lanes[1]));
-        }
-        let trail = self.trail();
-        let restoring = self.restore.is_some();
-        let mut trails = [trail, Vec::new()].into_iter();
-        let wish = &self.wish;
-        let sides = self.lanes.iter_mut().map(|lane| {
-            let trail = trails.next().unwrap_or_default();
-            if restoring { lane.last_side() } else { lane.side(wish, trail) }
-        });
-        let sides = sides.collect();
-        self.tell(sides)
-    }
-
-    /// The last that is known, without asking the worlds anything.
-    pub fn last_report(&mut self) -> Report {
-        let sides = self.lanes.iter_mut().map(Lane::last_side).collect();
-        self.tell(sides)
-    }
-
-    fn tell(&mut self, sides: Vec<super::report::Side>) -> Report {
-        self.number += 1;
-        self.news = News::None;
-        let (first, last) = self.tape.range();
-        let now = self.restore.as_ref().map_or(self.position().tick, |r| r.target);
-        Report {
-            number: self.number,
-            title: self.title.clone(),
-            running: self.task == Task::Run,
-            pace: self.pace.report(),
-            timeline: Timeline { first, last, now, stride: self.stride, restoring: self.restore.is_some() },
-            rival_agrees: if sides.len() > 1 { self.agrees } else { None },
-            sides,
-            trouble: self.trouble.clone(),
-            troubles: self.troubles,
-        }
-    }
-
-    /// Poses of earlier frames, oldest first.
-    fn trail(&self) -> Vec<Arc<Poses>> {
-        let shot = &self.lanes[0].shot;
-        let earlier = self.tape.shots().rev().skip_while(|s| s.tick >= shot.tick);
-        let same = earlier.take_while(|s| Arc::ptr_eq(&s.stage, &shot.stage)).take(self.wish.trail);
-        let mut trail: Vec<_> = same.map(|s| s.poses.clone()).collect();
-        trail.reverse();
-        trail
     }
 }
 

@@ -85,6 +85,13 @@ impl Machine {
         self.done = 0;
     }
 
+    /// Takes back that a frame was begun, if no step of it was made.
+    pub fn withdraw(&mut self) {
+        if self.done == 0 {
+            self.plan = None;
+        }
+    }
+
     /// One physical step of the frame in progress; whether that ended it.
     ///
     /// # Errors
@@ -139,11 +146,7 @@ impl Machine {
         let new = self.loaded.world.settings();
         let (fps, steps) = (old.fps != new.fps, old.steps_per_frame != new.steps_per_frame);
         if (fps || steps) && self.plan.is_some() {
-            if self.done > 0 {
-                self.end();
-            } else {
-                self.plan = None;
-            }
+            self.end();
         }
         if fps || (matches!(deed, Deed::Fps(_)) && result.is_ok()) {
             self.frame = 0;
@@ -173,17 +176,18 @@ impl Machine {
         self.hand.as_ref().map(|hand| hand.grip)
     }
 
-    /// Makes it a rival: another world from the same state with other settings. Those that differ stay its own.
+    /// Another world from the same state, whose own settings are `wanted` wherever that differs from `common`, now and
+    /// later. The frame rate is always common.
     ///
     /// # Errors
     /// A setting is out of range, or one that is fixed when a world is made.
-    pub fn rival(&self, settings: &Settings) -> Result<Machine, String> {
-        let common = self.loaded.world.settings().clone();
-        let wanted = Settings { fps: common.fps, ..settings.clone() };
+    pub fn rival(&self, common: &Settings, wanted: &Settings) -> Result<Machine, String> {
+        let wanted = Settings { fps: common.fps, ..wanted.clone() };
         let mut loaded = self.loaded.clone();
-        loaded.world.set_settings(wanted.clone()).map_err(|e| format!("rival: {e}"))?;
+        let settings = with_own(loaded.world.settings(), common, &wanted);
+        loaded.world.set_settings(settings).map_err(|e| format!("rival: {e}"))?;
         let Machine { frame, tick, done, plan, hand, .. } = self;
-        let own = Some((common, wanted));
+        let own = Some((common.clone(), wanted));
         Ok(Machine {
             loaded,
             frame: *frame,

@@ -20,6 +20,7 @@ mod extras;
 mod tape;
 mod core;
 mod restore;
+mod telling;
 mod worker;
 #[cfg(test)]
 mod tests;

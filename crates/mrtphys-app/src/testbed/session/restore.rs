@@ -81,6 +81,7 @@ impl Core {
             }
             let here = machine.position();
             if here >= goal {
+                machine.withdraw();
                 continue;
             }
             if !machine.is_inside() {

@@ -216,7 +216,8 @@ impl Tape {
     /// Begins the recording of a rival.
     pub fn begin_rival(&mut self, rival: &mut Machine) {
         self.keys[1] = Keys::default();
-        let deeds = self.deeds_made();
+        // There may be deeds to come, if this is a frame that was gone back to.
+        let deeds = self.deeds_after(rival.position());
         self.keys[1].keep(Key { still: Arc::new(Still::of(rival)), deeds });
     }
 

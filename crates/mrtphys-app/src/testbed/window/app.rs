@@ -67,6 +67,7 @@ pub struct Testbed {
     /// where the picture is
     picture: egui::Rect,
     driver: String,
+    window_title: String,
 }
 
 impl Testbed {
@@ -116,6 +117,7 @@ impl Testbed {
             side_panel: true,
             below: false,
             picture: egui::Rect::ZERO,
+            window_title: String::new(),
             driver: format!("{} ({:?})", info.name, info.backend),
         })
     }
@@ -167,6 +169,15 @@ impl Testbed {
                 self.trouble.clear();
                 (self.session_trouble, self.going) = (None, Pending::default());
             }
+        }
+    }
+
+    /// The window is called after the scene.
+    fn name_window(&mut self, context: &egui::Context) {
+        let title = format!("{} - mrtphys", super::files::stem(&self.desk.name));
+        if title != self.window_title {
+            self.window_title.clone_from(&title);
+            context.send_viewport_cmd(egui::ViewportCommand::Title(title));
         }
     }
 
@@ -383,6 +394,7 @@ impl eframe::App for Testbed {
             self.act(&context, action);
         }
         self.remember(&context);
+        self.name_window(&context);
         self.desk.end();
         self.write_status(&context);
         if self.messages.will_change() {

@@ -132,6 +132,7 @@ impl Export {
         if let Some(found) = self.asked.as_ref().and_then(|r| r.try_recv().ok()) {
             (self.recorded, self.asked) = (found, None);
         }
+        desk.probes.say(|| "film.format".into(), FILM_KINDS[self.kind].0);
         let (first, last) = self.recorded;
         let whole = self.range.is_none();
         let (mut from, mut to) = self.range.unwrap_or((first, last));

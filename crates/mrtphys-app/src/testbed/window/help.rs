@@ -65,7 +65,7 @@ impl Help {
 }
 
 /// Width of the names \[points\].
-const NAMES: f32 = 150.0;
+const NAMES: f32 = 232.0;
 
 fn table<'a>(ui: &mut egui::Ui, title: &str, lines: impl Iterator<Item = (&'a str, &'a str)>) {
     ui.strong(title);
@@ -97,16 +97,15 @@ fn help(ui: &mut egui::Ui) {
 }
 
 fn about(ui: &mut egui::Ui, driver: &str) {
-    ui.set_max_width(420.0);
+    ui.set_width(400.0);
     ui.heading("mrtphys");
     ui.label("Rigid bodies that collide as physics says.");
     ui.add_space(6.0);
     let lines = [
         ("Version", crate::cli::version()),
-        ("Precision", "double (IEEE 754, 64 bits); the same bits on every machine".into()),
+        ("Precision", "double (64 bits), the same bits on every machine".into()),
         ("Drawn by", driver.to_string()),
         ("Licence", env!("CARGO_PKG_LICENSE").into()),
-        ("Source", env!("CARGO_PKG_REPOSITORY").into()),
     ];
     for (name, text) in lines {
         line(ui, 80.0, name, &text);

@@ -100,7 +100,9 @@ mod tests {
         });
         let input = RawInput { events: events.collect(), ..RawInput::default() };
         let mut wanted = Vec::new();
-        let _ = context.run_ui(input, |ui| wanted.extend(pressed(ui.ctx())));
+        let mut output = context.run_ui(input, |ui| wanted.extend(pressed(ui.ctx())));
+        // Nobody uploads the letters of a test.
+        output.textures_delta.clear();
         wanted
     }
 

@@ -43,6 +43,7 @@ impl Trouble {
         egui::Window::new(title)
             .id(egui::Id::unique("trouble"))
             .open(&mut open)
+            .collapsible(false)
             .default_width(620.0)
             .pivot(egui::Align2::CENTER_CENTER)
             .default_pos(context.content_rect().center())

@@ -126,6 +126,8 @@ fn buttons(ui: &mut egui::Ui, running: bool, desk: &mut Desk) {
     let width = (ui.available_width() - 4.0 * gap) / 5.0;
     let size = egui::vec2(width, 26.0);
     ui.horizontal(|ui| {
+        // All five side by side in a narrow panel.
+        ui.spacing_mut().button_padding.x = 1.0;
         let (text, hint) = if running { ("Stop", "Stand still (Space)") } else { ("Go", "Let time pass (Space)") };
         let go = egui::Button::new(egui::RichText::new(text).strong()).selected(running);
         let go = ui.add_sized(size, go).on_hover_text(hint);

@@ -52,22 +52,30 @@ fn parts(stages: &[(&'static str, Duration)]) -> Vec<(&'static str, Duration, f3
     stages.iter().map(|&(name, time)| (name, time, part(time))).collect()
 }
 
+/// Widths of the columns \[points\]: name, time, share.
+const NAME: f32 = 74.0;
+const TIME: f32 = 66.0;
+const SHARE: f32 = 44.0;
+const LINE: f32 = 18.0;
+
 fn bar(ui: &mut egui::Ui, name: &str, time: Duration, part: f32) {
-    let line = ui.horizontal(|ui| {
-        let width = ui.available_width();
-        ui.add_sized([0.27 * width, 18.0], egui::Label::new(name).truncate());
-        let (rect, _) = ui.allocate_exact_size(egui::vec2(0.38 * width, 12.0), egui::Sense::hover());
-        let visuals = ui.visuals();
-        ui.painter().rect_filled(rect, 2.0, visuals.extreme_bg_color);
-        let mut filled = rect;
-        filled.set_width(rect.width() * part.clamp(0.0, 1.0));
-        ui.painter().rect_filled(filled, 2.0, visuals.selection.bg_fill);
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let text = format!("{} {:>3.0} %", duration(time), 100.0 * part);
-            ui.add(egui::Label::new(egui::RichText::new(text).monospace()).truncate());
-        });
-    });
-    line.response.on_hover_text(hint(name));
+    let width = ui.available_width();
+    let (rect, response) = ui.allocate_exact_size(egui::vec2(width, LINE), egui::Sense::hover());
+    let (painter, visuals) = (ui.painter(), ui.visuals());
+    let text = |x: f32, align: egui::Align2, style: egui::TextStyle, text: String| {
+        let at = egui::pos2(x, rect.center().y);
+        painter.text(at, align, text, style.resolve(ui.style()), visuals.text_color());
+    };
+    text(rect.left(), egui::Align2::LEFT_CENTER, egui::TextStyle::Body, name.into());
+    text(rect.right() - SHARE, egui::Align2::RIGHT_CENTER, egui::TextStyle::Monospace, duration(time));
+    text(rect.right(), egui::Align2::RIGHT_CENTER, egui::TextStyle::Monospace, format!("{:.0} %", 100.0 * part));
+    let left = egui::pos2(rect.left() + NAME, rect.top() + 4.0);
+    let right = egui::pos2(rect.right() - SHARE - TIME, rect.bottom() - 4.0);
+    let mut bar = egui::Rect::from_min_max(left, right.max(left));
+    painter.rect_filled(bar, 2.0, visuals.extreme_bg_color);
+    bar.set_width(bar.width() * part.clamp(0.0, 1.0));
+    painter.rect_filled(bar, 2.0, visuals.selection.bg_fill);
+    response.on_hover_text(hint(name));
 }
 
 /// What a stage does.
