@@ -27,8 +27,8 @@ pub struct Viewport {
     drag: Option<Drag>,
     followed: Option<(BodyId, Vec3)>,
     hover: Hover,
-    /// contacts of every body, and the report that they were asked for with
-    contacts: (Inquiry<Vec<u32>>, u64),
+    /// contacts of every body, and the state that they were asked for
+    contacts: (Inquiry<Vec<u32>>, usize),
     trouble: Option<String>,
     opened: u64,
 }
@@ -45,8 +45,8 @@ struct Drag {
 #[derive(Default)]
 struct Hover {
     hit: Option<Hit>,
-    /// the body and the report that were asked about
-    asked: Option<(BodyId, u64)>,
+    /// the body and the state that were asked about
+    asked: Option<(BodyId, usize)>,
     /// name and velocity \[m/s\]
     about: Inquiry<(BodyId, String, Vec3)>,
 }
@@ -278,7 +278,8 @@ impl Viewport {
         if desk.seeing.hand || ui.input(|i| i.modifiers.alt) {
             ui.ctx().set_cursor_icon(egui::CursorIcon::Grab);
         }
-        let now = Some((hit.body, desk.report().number));
+        // Not the report's number: an answer may come with a report of its own.
+        let now = Some((hit.body, moment(desk.report())));
         if self.hover.asked != now && !self.hover.about.is_waiting() && desk.seeing.labels {
             self.hover.asked = now;
             let id = hit.body;
@@ -316,8 +317,8 @@ impl Viewport {
         if !desk.seeing.sight.coloring.needs_contacts() {
             return;
         }
-        if *asked != report.number && !inquiry.is_waiting() {
-            *asked = report.number;
+        if *asked != moment(report) && !inquiry.is_waiting() {
+            *asked = moment(report);
             let stage = report.sides[0].shot.stage.clone();
             inquiry.ask(&desk.session, ui.ctx(), move |studio| {
                 let mut counts = Vec::new();
@@ -438,6 +439,11 @@ impl Viewport {
             labels::name_tag(ui, pane, pane.screen(at), &name, (!stage.is_fixed(i)).then_some(speed));
         }
     }
+}
+
+/// Tells states apart: every frame and every edit has poses of its own.
+fn moment(report: &Report) -> usize {
+    std::sync::Arc::as_ptr(&report.sides[0].shot.poses) as usize
 }
 
 /// Pixels of a picture of this size on the screen, drawn with a part of them.
