@@ -1,11 +1,10 @@
 //! What can be asked of a session.
 
 use super::pace::RealTime;
-use super::report::Shot;
+use super::report::Recorded;
 use mrtphys::def::Settings;
 use mrtphys::{BodyId, Vec3};
 use mrtphys_scene::Loaded;
-use std::sync::Arc;
 
 /// A change of the world. It is called for the world, for its rival, and again whenever a frame after it is restored: so it
 /// must do the same to the same world, and nothing else. An error is shown to the user.
@@ -58,6 +57,8 @@ pub enum Command {
 pub struct Wish {
     /// contacts of the last step
     pub contacts: bool,
+    /// number of contacts of every body in the last step
+    pub touches: bool,
     /// impacts since the last report
     pub impacts: bool,
     /// velocity and angular velocity of every body
@@ -90,5 +91,5 @@ pub struct Studio<'a> {
     /// the world, its names and its scene
     pub loaded: &'a Loaded,
     /// the recording, oldest first
-    pub shots: &'a dyn Fn() -> Vec<Arc<Shot>>,
+    pub frames: &'a dyn Fn() -> Vec<Recorded>,
 }

@@ -4,6 +4,7 @@ use super::command::{Command, Grip, Question, Studio, Wish};
 use super::lane::Lane;
 use super::machine::{Deed, Machine, Position, Still};
 use super::pace::{Due, Pace, RealTime};
+use super::report::Recorded;
 use super::restore::Restore;
 use super::tape::{BUDGET, Tape};
 use mrtphys::def::Settings;
@@ -98,7 +99,7 @@ impl Core {
         let title = machine.loaded.scene.title.clone();
         let lane = Lane::new(machine);
         let mut tape = Tape::new(origin.clone(), budget);
-        tape.push(lane.shot.clone());
+        tape.push(Recorded { shot: lane.shot.clone(), rival: None });
         Core {
             clock,
             title,
@@ -260,7 +261,7 @@ impl Core {
     /// Begins again with the scene as it was loaded; what waited to be done would have been undone.
     fn restart(&mut self) {
         let now = self.now();
-        let stage = self.tape.shot(0).map(|s| s.stage.clone());
+        let stage = self.tape.recorded(0).map(|f| f.shot.stage.clone());
         self.queue.clear();
         (self.restore, self.trouble, self.holding, self.stride) = (None, None, None, 1);
         let budget = self.tape.budget();
@@ -268,7 +269,7 @@ impl Core {
         let machine = self.origin.awake();
         let fps = machine.world().settings().fps;
         self.lanes = vec![Lane::on(machine, stage)];
-        self.tape.push(self.lanes[0].shot.clone());
+        self.tape.push(Recorded { shot: self.lanes[0].shot.clone(), rival: None });
         self.pace.set_fps(fps, now);
         self.pace.forget_skipped();
         self.pace.jump(now);
@@ -299,8 +300,8 @@ impl Core {
     }
 
     fn answer(&mut self, question: Question) {
-        let shots = || self.tape.shots().cloned().collect();
-        question(&Studio { loaded: &self.lanes[0].machine.loaded, shots: &shots });
+        let frames = || self.tape.frames().cloned().collect();
+        question(&Studio { loaded: &self.lanes[0].machine.loaded, frames: &frames });
     }
 
     /// Changes the worlds, here and now.

@@ -13,6 +13,9 @@ pub fn extras(loaded: &Loaded, stage: &Stage, wish: &Wish) -> Extras {
     if wish.contacts {
         out.contacts = world.contacts().list.clone();
     }
+    if wish.touches {
+        stage.count_contacts(world, &mut out.touches);
+    }
     if wish.cells {
         out.cells = world.cells();
     }

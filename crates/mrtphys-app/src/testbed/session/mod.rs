@@ -1,9 +1,6 @@
 //! A world that lives on a thread of its own: commands go in, reports come out. Drawing never waits for physics, nor
 //! physics for drawing.
 
-// The contract is wider than what the window happens to use.
-#![allow(dead_code, unused_imports)]
-
 // The contract.
 mod command;
 mod report;
@@ -27,7 +24,8 @@ mod tests;
 
 pub use command::{Command, Grip, Studio, Wish};
 pub use pace::RealTime;
-pub use report::{Extras, Numbers, PaceReport, Report, Sample, Shot, Side, Timeline};
+pub use report::{Extras, Numbers, PaceReport, Recorded, Report, Sample, Shot, Side};
+pub use telling::trail;
 pub use time_code::time_code;
 
 use mrtphys_scene::{Diagnostics, Scene};

@@ -29,6 +29,22 @@ pub struct Shot {
     pub poses: Arc<Poses>,
 }
 
+/// A frame of the recording.
+#[derive(Clone)]
+pub struct Recorded {
+    /// the world's
+    pub shot: Arc<Shot>,
+    /// that of the rival that runs beside it, from where it began
+    pub rival: Option<Arc<Shot>>,
+}
+
+impl Recorded {
+    /// That of a world: 0 the world, 1 its rival.
+    pub fn side(&self, i: usize) -> Option<&Arc<Shot>> {
+        if i == 0 { Some(&self.shot) } else { self.rival.as_ref().filter(|_| i == 1) }
+    }
+}
+
 /// What happened in one frame, for plots; in several, where there were very many since the last report.
 #[derive(Clone, Debug, Default)]
 pub struct Sample {
@@ -100,6 +116,8 @@ pub struct Numbers {
 pub struct Extras {
     /// contacts of the last step: point, normal, depth
     pub contacts: Vec<Contact>,
+    /// number of contacts of every body in the last step, in the order of the stage
+    pub touches: Vec<u32>,
     /// impacts since the last report, the latest where there are very many
     pub impacts: Vec<ImpactEvent>,
     /// velocity \[m/s\] and angular velocity \[rad/s\] of every body, in the order of the stage

@@ -2,6 +2,7 @@
 
 use super::core::{Core, News};
 use super::machine::Position;
+use std::sync::Arc;
 
 /// A frame on its way back.
 pub struct Restore {
@@ -25,8 +26,10 @@ impl Core {
         if self.restore.is_none() && self.position() == (Position { tick: target, done: 0 }) && !self.is_inside() {
             return;
         }
-        if let Some(shot) = self.tape.shot(target).cloned() {
-            self.lanes[0].show(shot);
+        if let Some(recorded) = self.tape.recorded(target) {
+            for (i, lane) in self.lanes.iter_mut().enumerate() {
+                recorded.side(i).cloned().into_iter().for_each(|shot| lane.show(shot));
+            }
         }
         let under_way = self.restore.take().map(|r| r.next);
         self.set_out(target, under_way, true);
@@ -40,7 +43,7 @@ impl Core {
 
     /// `trusted`: the worlds may go on from where they are.
     fn set_out(&mut self, target: u64, under_way: Option<Vec<Option<usize>>>, trusted: bool) {
-        let warm = self.wish.contacts || self.wish.cells;
+        let warm = self.wish.contacts || self.wish.touches || self.wish.cells;
         let goal = Position { tick: target, done: 0 };
         let mut next = Vec::new();
         for (i, lane) in self.lanes.iter_mut().enumerate() {
@@ -108,12 +111,13 @@ impl Core {
         if self.lanes.len() > 1 && self.tape.keys(1).nearest(reached, false).is_none() {
             self.fork();
         }
-        let recorded = self.lanes[0].shot.tick == reached;
+        let recorded = self.tape.recorded(reached).filter(|f| f.shot.tick == reached);
         for (i, lane) in self.lanes.iter_mut().enumerate() {
             lane.forget();
-            // Only the world's own picture was recorded. A rival's bodies may be those of another time.
-            lane.is_seen = i == 0 && recorded;
-            lane.restage = i > 0;
+            let shown = recorded.and_then(|f| f.side(i)).is_some_and(|shot| Arc::ptr_eq(shot, &lane.shot));
+            // The picture that is shown may be of another time, when there were other bodies.
+            lane.is_seen = shown;
+            lane.restage = i > 0 && !shown;
         }
         self.is_unasked = true;
         self.listen();

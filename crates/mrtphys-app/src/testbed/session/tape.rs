@@ -4,7 +4,7 @@
 //! world is deterministic. So states can be kept as rarely as memory asks for, and an edit costs no memory to speak of.
 
 use super::machine::{Deed, Machine, Position, Still};
-use super::report::Shot;
+use super::report::{Recorded, Shot};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
@@ -109,10 +109,10 @@ impl Keys {
 /// A recording of a world and, where there is one, of its rival.
 pub struct Tape {
     budget: usize,
-    shots: VecDeque<Arc<Shot>>,
+    frames: VecDeque<Recorded>,
     /// memory of each, and of all \[bytes\]
     weights: VecDeque<usize>,
-    shot_bytes: usize,
+    frame_bytes: usize,
     /// what was done, in order; deeds are numbered, and those that are forgotten keep their numbers
     deeds: Vec<(Position, Deed)>,
     forgotten: usize,
@@ -129,9 +129,9 @@ impl Tape {
     pub fn new(origin: Arc<Still>, budget: usize) -> Tape {
         let mut tape = Tape {
             budget,
-            shots: VecDeque::new(),
+            frames: VecDeque::new(),
             weights: VecDeque::new(),
-            shot_bytes: 0,
+            frame_bytes: 0,
             deeds: Vec::new(),
             forgotten: 0,
             merged: Vec::new(),
@@ -144,18 +144,23 @@ impl Tape {
 
     /// First and last frame that can be gone to.
     pub fn range(&self) -> (u64, u64) {
-        (self.shots.front().map_or(self.last, |s| s.tick).min(self.last), self.last)
+        (self.frames.front().map_or(self.last, |f| f.shot.tick).min(self.last), self.last)
     }
 
-    /// The shots, oldest first.
+    /// What is recorded, oldest first.
+    pub fn frames(&self) -> impl DoubleEndedIterator<Item = &Recorded> {
+        self.frames.iter()
+    }
+
+    /// The shots of the world, oldest first.
     pub fn shots(&self) -> impl DoubleEndedIterator<Item = &Arc<Shot>> {
-        self.shots.iter()
+        self.frames.iter().map(|f| &f.shot)
     }
 
-    /// The recorded shot of a frame, or of the last one recorded before it.
-    pub fn shot(&self, tick: u64) -> Option<&Arc<Shot>> {
-        let end = self.shots.partition_point(|s| s.tick <= tick);
-        end.checked_sub(1).map(|i| &self.shots[i])
+    /// What is recorded of a frame, or of the last one recorded before it.
+    pub fn recorded(&self, tick: u64) -> Option<&Recorded> {
+        let end = self.frames.partition_point(|f| f.shot.tick <= tick);
+        end.checked_sub(1).map(|i| &self.frames[i])
     }
 
     /// Notes that a frame was made.
@@ -163,29 +168,36 @@ impl Tape {
         self.last = self.last.max(tick);
     }
 
-    /// Records a shot; one of the same frame is replaced.
-    pub fn push(&mut self, shot: Arc<Shot>) {
-        self.made(shot.tick);
-        let place = self.shots.partition_point(|s| s.tick < shot.tick);
-        if self.shots.get(place).is_some_and(|s| s.tick == shot.tick) {
-            self.drop_shot(place);
+    /// Records a frame; one of the same number is replaced.
+    pub fn push(&mut self, frame: Recorded) {
+        let tick = frame.shot.tick;
+        self.made(tick);
+        let place = self.frames.partition_point(|f| f.shot.tick < tick);
+        if self.frames.get(place).is_some_and(|f| f.shot.tick == tick) {
+            self.drop_frame(place);
         }
-        // A stage is shared by the frames from it on.
-        let before = place.checked_sub(1).map(|i| &self.shots[i]);
-        let new_stage = before.is_some_and(|s| !Arc::ptr_eq(&s.stage, &shot.stage));
-        let bytes = bytes(&shot) + if new_stage { shot.stage.body_count() * STAGE_BYTES } else { 0 };
-        self.shot_bytes += bytes;
-        self.shots.insert(place, shot);
+        let bytes = bytes(&frame, place.checked_sub(1).map(|i| &self.frames[i]));
+        self.frame_bytes += bytes;
+        self.frames.insert(place, frame);
         self.weights.insert(place, bytes);
         let most = (self.budget as f64 * SHOTS_PART) as usize;
-        while self.shot_bytes > most && self.shots.len() > FEWEST_SHOTS {
-            self.drop_shot(0);
+        while self.frame_bytes > most && self.frames.len() > FEWEST_SHOTS {
+            self.drop_frame(0);
         }
     }
 
-    fn drop_shot(&mut self, place: usize) {
-        self.shots.remove(place);
-        self.shot_bytes -= self.weights.remove(place).unwrap_or(0);
+    fn drop_frame(&mut self, place: usize) {
+        self.frames.remove(place);
+        self.frame_bytes -= self.weights.remove(place).unwrap_or(0);
+    }
+
+    /// Forgets the pictures of a rival that is no more.
+    fn drop_rival(&mut self) {
+        self.frames.iter_mut().for_each(|f| f.rival = None);
+        for i in 0..self.frames.len() {
+            self.weights[i] = bytes(&self.frames[i], i.checked_sub(1).map(|i| &self.frames[i]));
+        }
+        self.frame_bytes = self.weights.iter().sum();
     }
 
     /// Keeps a state of each world if it is time, and forgets what nobody can ask for any more. `cost`: what was computed
@@ -215,7 +227,7 @@ impl Tape {
 
     /// Begins the recording of a rival.
     pub fn begin_rival(&mut self, rival: &mut Machine) {
-        self.keys[1] = Keys::default();
+        self.end_rival();
         // There may be deeds to come, if this is a frame that was gone back to.
         let deeds = self.deeds_after(rival.position());
         self.keys[1].keep(Key { still: Arc::new(Still::of(rival)), deeds });
@@ -224,6 +236,7 @@ impl Tape {
     /// Ends it.
     pub fn end_rival(&mut self) {
         self.keys[1] = Keys::default();
+        self.drop_rival();
     }
 
     fn forget(&mut self) {
@@ -289,8 +302,8 @@ impl Tape {
 
     /// Forgets everything after here. In the middle of a frame, the frame itself goes on.
     pub fn cut(&mut self, here: Position) {
-        while self.shots.back().is_some_and(|s| s.tick > here.tick) {
-            self.drop_shot(self.shots.len() - 1);
+        while self.frames.back().is_some_and(|f| f.shot.tick > here.tick) {
+            self.drop_frame(self.frames.len() - 1);
         }
         self.deeds.retain(|(at, _)| *at <= here);
         self.merged.retain(|(tick, _)| *tick < here.tick || (*tick == here.tick && here.done > 0));
@@ -304,7 +317,16 @@ impl Tape {
     }
 }
 
-/// About how much memory a shot takes.
-fn bytes(shot: &Shot) -> usize {
-    200 + shot.poses.positions.len() * 24 + shot.poses.orientations.len() * 32
+/// About how much memory a frame takes. A stage is shared by the frames from it on, and by the worlds.
+fn bytes(frame: &Recorded, before: Option<&Recorded>) -> usize {
+    let poses = |shot: &Shot| 200 + shot.poses.positions.len() * 24 + shot.poses.orientations.len() * 32;
+    let stage = |shot: &Shot, like: &Shot| {
+        if Arc::ptr_eq(&shot.stage, &like.stage) { 0 } else { shot.stage.body_count() * STAGE_BYTES }
+    };
+    let own = poses(&frame.shot) + before.map_or(0, |b| stage(&frame.shot, &b.shot));
+    let rival = frame.rival.as_ref().map_or(0, |rival| {
+        let like = before.and_then(|b| b.rival.as_ref()).unwrap_or(&frame.shot);
+        poses(rival) + stage(rival, like)
+    });
+    own + rival
 }

@@ -2,7 +2,7 @@
 
 use super::core::{Core, News, Task};
 use super::lane::Lane;
-use super::report::{Report, Side, Timeline};
+use super::report::{Recorded, Report, Shot, Side, Timeline};
 use mrtphys_view::Poses;
 use std::sync::Arc;
 use std::time::Duration;
@@ -24,7 +24,9 @@ impl Core {
         let is_new = !self.lanes[0].is_seen;
         self.lanes.iter_mut().filter(|lane| !lane.is_seen).for_each(|lane| lane.look(follows));
         if is_new && !self.is_inside() {
-            self.tape.push(self.lanes[0].shot.clone());
+            let shot = self.lanes[0].shot.clone();
+            let rival = self.lanes.get(1).map(|lane| lane.shot.clone()).filter(|r| r.tick == shot.tick);
+            self.tape.push(Recorded { shot, rival });
             let tick = self.position().tick;
             // Nothing is learned from a frame that was gone back to, or looked at again.
             self.stride = old.and_then(|old| tick.checked_sub(old)).filter(|&n| n > 0).unwrap_or(self.stride);
@@ -49,9 +51,8 @@ impl Core {
             self.is_unasked = false;
             self.agrees = Some(hash(&self.lanes[0]) == hash(&self.lanes[1]));
         }
-        let trail = self.trail();
         let restoring = self.restore.is_some();
-        let mut trails = [trail, Vec::new()].into_iter();
+        let mut trails = [self.trail(0), self.trail(1)].into_iter();
         let wish = &self.wish;
         let sides = self.lanes.iter_mut().map(|lane| {
             let trail = trails.next().unwrap_or_default();
@@ -85,13 +86,24 @@ impl Core {
         }
     }
 
-    /// Poses of earlier frames, oldest first.
-    fn trail(&self) -> Vec<Arc<Poses>> {
-        let shot = &self.lanes[0].shot;
-        let earlier = self.tape.shots().rev().skip_while(|s| s.tick >= shot.tick);
-        let same = earlier.take_while(|s| Arc::ptr_eq(&s.stage, &shot.stage)).take(self.wish.trail);
-        let mut trail: Vec<_> = same.map(|s| s.poses.clone()).collect();
-        trail.reverse();
-        trail
+    /// Poses of a world's earlier frames, oldest first.
+    fn trail(&self, lane: usize) -> Vec<Arc<Poses>> {
+        let Some(Lane { shot, .. }) = self.lanes.get(lane) else { return Vec::new() };
+        let earlier = self.tape.frames().rev().skip_while(|f| f.shot.tick >= shot.tick);
+        trail(earlier, lane, shot, self.wish.trail)
     }
+}
+
+/// Poses of a world's frames before one, oldest first: as many as asked for, and only those with the same stage. `earlier`: the
+/// recording before it, backwards.
+pub fn trail<'a>(
+    earlier: impl Iterator<Item = &'a Recorded>,
+    lane: usize,
+    shot: &Shot,
+    most: usize,
+) -> Vec<Arc<Poses>> {
+    let own = earlier.map_while(|f| f.side(lane)).take_while(|s| Arc::ptr_eq(&s.stage, &shot.stage));
+    let mut trail: Vec<_> = own.take(most).map(|s| s.poses.clone()).collect();
+    trail.reverse();
+    trail
 }

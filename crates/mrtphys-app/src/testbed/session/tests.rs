@@ -516,11 +516,18 @@ fn wishes_are_granted_and_cost_nothing_otherwise() {
     b.frames(2);
     let bare = b.report().sides.swap_remove(0).extras;
     assert!(bare.contacts.is_empty() && bare.impacts.is_empty() && bare.velocities.is_empty());
-    assert!(bare.boxes.is_empty() && bare.cells.is_empty() && bare.speeds.is_empty() && bare.trail.is_empty());
+    assert!(
+        bare.touches.is_empty()
+            && bare.boxes.is_empty()
+            && bare.cells.is_empty()
+            && bare.speeds.is_empty()
+            && bare.trail.is_empty()
+    );
     let id = first_body(b.core.loaded());
     let selected = Some(id);
     let wish = Wish {
         contacts: true,
+        touches: true,
         impacts: true,
         velocities: true,
         boxes: true,

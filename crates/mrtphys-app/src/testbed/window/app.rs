@@ -43,7 +43,7 @@ pub struct Beginning {
 pub struct Testbed {
     pub(super) desk: Desk,
     panel: Panel,
-    viewport: Viewport,
+    pub(super) viewport: Viewport,
     transport: Transport,
     gallery: Gallery,
     trouble: Trouble,

@@ -1,11 +1,14 @@
 //! What a picture or a film is to be like, before the file is asked for.
 
 use super::desk::Desk;
+use super::drawing::View;
 use super::files::Purpose;
 use super::format::{brief, count};
 use super::reel::{FILM_KINDS, MOST_PICTURES, Take};
 use crate::testbed::session::Command;
 use eframe::egui;
+use mrtphys::Vec3;
+use mrtphys_view::Look;
 use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver};
 
@@ -23,6 +26,13 @@ pub enum Asked {
     Film,
 }
 
+/// What is in the recording.
+struct Found {
+    /// simulated time of the first and the last frame \[s\]
+    times: (f64, f64),
+    has_rival: bool,
+}
+
 /// The two windows.
 pub struct Export {
     /// whether the picture's is open
@@ -37,7 +47,9 @@ pub struct Export {
     range: Option<(f64, f64)>,
     /// simulated time of the first and the last frame of the recording \[s\]
     recorded: (f64, f64),
-    asked: Option<Receiver<(f64, f64)>>,
+    /// whether there is a rival in the recording, and whether it is to be in the film
+    rival: (bool, bool),
+    asked: Option<Receiver<Found>>,
 }
 
 impl Export {
@@ -52,6 +64,7 @@ impl Export {
             speed: 1.0,
             range: None,
             recorded: (0.0, 0.0),
+            rival: (false, true),
             asked: None,
         }
     }
@@ -62,9 +75,10 @@ impl Export {
         let (sender, receiver) = mpsc::channel();
         let context = context.clone();
         desk.send(Command::Ask(Box::new(move |studio| {
-            let shots = (studio.shots)();
-            if let (Some(first), Some(last)) = (shots.first(), shots.last()) {
-                let _ = sender.send((first.time, last.time));
+            let frames = (studio.frames)();
+            if let (Some(first), Some(last)) = (frames.first(), frames.last()) {
+                let has_rival = frames.iter().any(|f| f.rival.is_some());
+                let _ = sender.send(Found { times: (first.shot.time, last.shot.time), has_rival });
                 context.request_repaint();
             }
         })));
@@ -84,13 +98,16 @@ impl Export {
         }
     }
 
-    /// The film that was chosen, into this file.
-    pub fn take(&self, desk: &Desk, path: PathBuf) -> Take {
+    /// The film that was chosen, into this file. `follow`: where the selected body is in the window, if the camera follows it.
+    pub fn take(&self, desk: &Desk, follow: Option<Vec3>, path: PathBuf) -> Take {
         let (from, to) = self.range.unwrap_or(self.recorded);
         let (fps, speed, (w, h)) = (self.fps, self.speed, self.size);
         // H.264 has no odd sizes.
         let size = if FILM_KINDS[self.kind].0 == "mp4" { ((w & !1).max(2), (h & !1).max(2)) } else { (w, h) };
-        Take { from, to, fps, speed, size, camera: desk.camera, look: desk.look, path }
+        let look = Look { smooth: Some(true), ..desk.look };
+        let (camera, sight, selected) = (desk.camera, desk.seeing.sight, desk.selected);
+        let view = View { camera, look, sight, selected, spring: None, size };
+        Take { from, to, fps, speed, view, follow, rival: self.rival == (true, true), path }
     }
 
     /// Shows what is open; what is to be saved, once that was chosen. `window` is the size of the picture on the screen.
@@ -130,7 +147,7 @@ impl Export {
 
     fn film_contents(&mut self, ui: &mut egui::Ui, desk: &mut Desk, window: (u32, u32)) -> bool {
         if let Some(found) = self.asked.as_ref().and_then(|r| r.try_recv().ok()) {
-            (self.recorded, self.asked) = (found, None);
+            (self.recorded, self.rival.0, self.asked) = (found.times, found.has_rival, None);
         }
         desk.probes.say(|| "film.format".into(), FILM_KINDS[self.kind].0);
         let (first, last) = self.recorded;
@@ -164,20 +181,30 @@ impl Export {
             ui.label("To").on_hover_text("Simulated time of the end [s]");
             ui.add(egui::DragValue::new(&mut to).range(from..=last).speed(step).suffix(" s").max_decimals(4));
             ui.end_row();
+            if self.rival.0 {
+                ui.label("Rival");
+                ui.checkbox(&mut self.rival.1, "beside the world")
+                    .on_hover_text("The world at the left, its rival at the right, from where the comparison began");
+                ui.end_row();
+            }
         });
         if !(whole && (from, to) == (first, last)) {
             self.range = Some((from, to.max(from)));
         }
-        let take = self.take(desk, PathBuf::new());
+        let take = self.take(desk, None, PathBuf::new());
         let (pictures, seconds) = (take.pictures(), take.pictures() as f64 / f64::from(self.fps));
         let fits = pictures <= MOST_PICTURES;
         let text = format!(
-            "{} pictures, {} s of film. Look and camera are those of the window.",
+            "{} pictures, {} s of film. Look and camera are those of the window; names and legends are left out.",
             count(pictures),
             brief(seconds)
         );
         ui.add_space(4.0);
         ui.add(egui::Label::new(text).wrap());
+        if let Some(text) = missing(&desk.seeing.sight.unrecorded()) {
+            desk.probes.say(|| "film.missing".into(), &text);
+            ui.add(egui::Label::new(egui::RichText::new(text).color(ui.visuals().warn_fg_color)).wrap());
+        }
         if !fits {
             ui.colored_label(
                 ui.visuals().error_fg_color,
@@ -191,6 +218,14 @@ impl Export {
         desk.probes.mark("film.save", &save);
         save.clicked()
     }
+}
+
+/// What is to be said of what is in the window and cannot be in a film.
+fn missing(names: &[&str]) -> Option<String> {
+    (!names.is_empty()).then(|| {
+        let names = names.join(", ").to_lowercase();
+        format!("Not in the film, because the recording has only where the bodies were: {names}. A picture has them.")
+    })
 }
 
 fn first_kind() -> usize {

@@ -21,6 +21,11 @@ impl Progress {
         self.total.store(total, Relaxed);
     }
 
+    /// Calls it off: the worker is to stop when it next looks.
+    pub fn call_off(&self) {
+        self.called_off.store(true, Relaxed);
+    }
+
     /// Whether the user called it off.
     pub fn is_called_off(&self) -> bool {
         self.called_off.load(Relaxed)
@@ -124,7 +129,7 @@ fn show_one(ui: &mut egui::Ui, job: &Job) {
         let cancel =
             ui.add_enabled(!stopping, egui::Button::new("Cancel")).on_hover_text("Call it off; nothing is written");
         if cancel.clicked() {
-            job.progress.called_off.store(true, Relaxed);
+            job.progress.call_off();
         }
     });
 }

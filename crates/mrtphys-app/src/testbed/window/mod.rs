@@ -19,6 +19,7 @@ mod transport;
 
 // The picture.
 mod detail;
+mod drawing;
 mod labels;
 mod mouse;
 mod picture;

@@ -1,12 +1,15 @@
 //! Pictures and films from the recording, made without the window.
 
+use super::drawing::{self, Moment, Scales, View};
 use super::jobs::Ticket;
+use super::mouse;
 use crate::exit::{Failure, Outcome};
 use crate::output::Whole;
 use crate::render::{self, Kind};
-use crate::testbed::session::Shot;
+use crate::testbed::session::{Extras, Recorded, Shot, Wish, trail};
+use mrtphys::Vec3;
 use mrtphys_view::film::Folder;
-use mrtphys_view::{Camera, Film, Frame, Image, Look, Poses, Renderer};
+use mrtphys_view::{Camera, Film, Frame, Image, Poses, Renderer, Theme, ViewError};
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -16,10 +19,12 @@ pub const MOST_PICTURES: u64 = 100_000;
 
 /// A picture that is to be made.
 pub struct Still {
-    /// what is on it
-    pub frame: Frame,
+    /// what is on it: from which column on, what, and how wide \[pixels\]
+    pub panes: Vec<(u32, Frame, u32)>,
     /// width and height \[pixels\]
     pub size: (u32, u32),
+    /// colors of what is between
+    pub theme: Theme,
     /// where it goes
     pub path: PathBuf,
 }
@@ -33,9 +38,13 @@ impl Still {
         let (width, height) = self.size;
         let make = || -> Outcome {
             let file = Whole::check(&self.path)?;
-            let image =
-                Renderer::new().and_then(|mut r| r.render(&self.frame, width, height)).map_err(render::failure)?;
-            let bytes = mrtphys_view::film::png_bytes(&image).map_err(render::failure)?;
+            let (mut renderer, mut image) = (Renderer::new().map_err(render::failure)?, Image::default());
+            let mut whole = drawing::board(self.size, self.theme);
+            for (left, frame, wide) in &self.panes {
+                renderer.render_into(frame, *wide, height, &mut image).map_err(render::failure)?;
+                drawing::put(&mut whole, *left, &image);
+            }
+            let bytes = mrtphys_view::film::png_bytes(&whole).map_err(render::failure)?;
             file.write(|to| to.write_all(&bytes))
         };
         make().map_err(|e| e.to_string())?;
@@ -54,12 +63,12 @@ pub struct Take {
     pub fps: u32,
     /// simulated seconds per second of the film
     pub speed: f64,
-    /// width and height \[pixels\]
-    pub size: (u32, u32),
-    /// from where
-    pub camera: Camera,
-    /// how it looks
-    pub look: Look,
+    /// how it looks; its size is that of the film
+    pub view: View,
+    /// where the selected body is in the view, if the camera is to follow it \[m\]
+    pub follow: Option<Vec3>,
+    /// whether the rival is beside the world, from where it is recorded
+    pub rival: bool,
     /// where it goes: a file by its ending, or a folder
     pub path: PathBuf,
 }
@@ -82,14 +91,14 @@ impl Take {
     ///
     /// # Errors
     /// There is nothing recorded, no driver, or the film cannot be written.
-    pub fn make(&self, shots: &[Arc<Shot>], ticket: &Ticket) -> Result<Option<String>, String> {
-        let made = self.make_here(shots, ticket).map_err(|e| e.to_string())?;
-        let (w, h) = self.size;
+    pub fn make(&self, frames: &[Recorded], ticket: &Ticket) -> Result<Option<String>, String> {
+        let made = self.make_here(frames, ticket).map_err(|e| e.to_string())?;
+        let (w, h) = self.view.size;
         Ok(made.then(|| format!("{}: {} pictures of {w} x {h} pixels", self.path.display(), self.pictures())))
     }
 
-    fn make_here(&self, shots: &[Arc<Shot>], ticket: &Ticket) -> Outcome<bool> {
-        if shots.is_empty() {
+    fn make_here(&self, frames: &[Recorded], ticket: &Ticket) -> Outcome<bool> {
+        if frames.is_empty() {
             return Err(Failure::Wrong("nothing is recorded of that time".into()));
         }
         if self.pictures() > MOST_PICTURES {
@@ -100,13 +109,13 @@ impl Take {
         if kind == Kind::Folder {
             render::check_folder(&self.path)?;
             let mut folder = Folder::create(&self.path).map_err(render::failure)?;
-            return self.shoot(shots, ticket, &mut renderer, &mut folder);
+            return self.shoot(frames, ticket, &mut renderer, &mut folder);
         }
         let file = Whole::check(&self.path)?;
         let mut ended = Ok(false);
         let written = file.write(|to| {
-            ended = render::open(to, kind, self.size, f64::from(self.fps))
-                .and_then(|mut film| self.shoot(shots, ticket, &mut renderer, &mut *film));
+            ended = render::open(to, kind, self.view.size, f64::from(self.fps))
+                .and_then(|mut film| self.shoot(frames, ticket, &mut renderer, &mut *film));
             // What is not a whole film is none: the file that was there stays.
             if matches!(ended, Ok(true)) { Ok(()) } else { Err(io::Error::other("the film was not finished")) }
         });
@@ -118,32 +127,122 @@ impl Take {
 
     fn shoot(
         &self,
-        shots: &[Arc<Shot>],
+        frames: &[Recorded],
         ticket: &Ticket,
         renderer: &mut Renderer,
         film: &mut dyn Film,
     ) -> Outcome<bool> {
-        let look = Look { smooth: Some(true), ..self.look };
-        let times: Vec<f64> = shots.iter().map(|s| s.time).collect();
-        let (mut frame, mut image, mut between) = (Frame::new(self.camera, look), Image::default(), Poses::default());
+        let times: Vec<f64> = frames.iter().map(|f| f.shot.time).collect();
+        let mut set = Set::new(self);
         let count = self.pictures();
         for i in 0..count {
             if ticket.progress.is_called_off() {
                 return Ok(false);
             }
             let (before, part) = place(&times, self.time(i));
-            let (a, b) = (&shots[before], &shots[(before + 1).min(shots.len() - 1)]);
-            // Bodies that come or go do so at once.
-            let a = if Arc::ptr_eq(&a.stage, &b.stage) || part < 1.0 { a } else { b };
-            let to = if Arc::ptr_eq(&a.stage, &b.stage) { b } else { a };
-            between.set_between(&a.poses, &to.poses, part);
-            a.stage.fill(self.camera, look, &between, &mut frame);
-            let drawn = renderer.render_into(&frame, self.size.0, self.size.1, &mut image);
-            drawn.and_then(|()| film.put(&image)).map_err(render::failure)?;
+            let drawn = set.picture(renderer, frames, before, part);
+            drawn.and_then(|image| film.put(image)).map_err(render::failure)?;
             ticket.progress(i + 1, count);
         }
         film.finish().map_err(render::failure)?;
         Ok(true)
+    }
+
+    /// What of the recording is needed: the frames of its time, one more at either end, and those of the trails before.
+    pub fn needed(&self, mut frames: Vec<Recorded>) -> Vec<Recorded> {
+        let first = frames.partition_point(|f| f.shot.time <= self.from).saturating_sub(1 + self.trail());
+        let last = frames.partition_point(|f| f.shot.time < self.to);
+        frames.truncate(last + 1);
+        frames.drain(..first.min(frames.len()));
+        frames
+    }
+
+    /// Length of trails \[frames\].
+    fn trail(&self) -> usize {
+        let mut wish = Wish { selected: self.view.selected, ..Wish::default() };
+        self.view.sight.wish(&mut wish);
+        wish.trail
+    }
+}
+
+/// What is kept from one picture of a film to the next.
+struct Set<'a> {
+    take: &'a Take,
+    trail: usize,
+    frame: Frame,
+    poses: Poses,
+    extras: Extras,
+    scales: [Scales; 2],
+    pane: Image,
+    whole: Image,
+    /// so many worlds are in the picture
+    sides: usize,
+}
+
+impl<'a> Set<'a> {
+    fn new(take: &'a Take) -> Set<'a> {
+        Set {
+            take,
+            trail: take.trail(),
+            frame: Frame::new(take.view.camera, take.view.look),
+            poses: Poses::default(),
+            extras: Extras::default(),
+            scales: Default::default(),
+            pane: Image::default(),
+            whole: Image::default(),
+            sides: 0,
+        }
+    }
+
+    /// The picture at this part of the way from a frame to the next.
+    fn picture(
+        &mut self,
+        renderer: &mut Renderer,
+        frames: &[Recorded],
+        before: usize,
+        part: f64,
+    ) -> Result<&Image, ViewError> {
+        let after = (before + 1).min(frames.len() - 1);
+        let last = if part < 1.0 { before } else { after };
+        let sides = if self.take.rival && frames[last].rival.is_some() { 2 } else { 1 };
+        let (width, height) = self.take.view.size;
+        if sides != self.sides {
+            self.sides = sides;
+            self.whole = drawing::board(self.take.view.size, self.take.view.look.theme);
+        }
+        let mut camera = None;
+        for (i, (left, wide)) in drawing::split(width, sides).into_iter().enumerate() {
+            let Some(shot) = frames[last].side(i) else { continue };
+            // Bodies that come or go do so at once.
+            let next = frames[after].side(i).filter(|next| Arc::ptr_eq(&shot.stage, &next.stage)).unwrap_or(shot);
+            self.poses.set_between(&shot.poses, &next.poses, part);
+            let newest = if Arc::ptr_eq(shot, next) { last } else { after };
+            self.extras.trail = trail(frames[..newest].iter().rev(), i, next, self.trail);
+            let camera = *camera.get_or_insert_with(|| self.take.camera(shot, &self.poses));
+            let view = View { camera, size: (wide, height), ..self.take.view };
+            // Cells are not recorded: whether they were a tree's does not matter.
+            let moment = Moment { stage: &shot.stage, poses: &self.poses, extras: &self.extras, is_tree: false };
+            drawing::fill(&mut self.frame, &moment, &view, &mut self.scales[i]);
+            if sides == 1 {
+                renderer.render_into(&self.frame, width, height, &mut self.whole)?;
+            } else {
+                renderer.render_into(&self.frame, wide, height, &mut self.pane)?;
+                drawing::put(&mut self.whole, left, &self.pane);
+            }
+        }
+        Ok(&self.whole)
+    }
+}
+
+impl Take {
+    /// The camera of a picture: it goes with the selected body of the world, if it is to follow it.
+    fn camera(&self, shot: &Shot, poses: &Poses) -> Camera {
+        let mut camera = self.view.camera;
+        let index = self.view.selected.and_then(|id| shot.stage.index(id));
+        if let (Some(from), Some(to)) = (self.follow, index.and_then(|i| poses.positions.get(i))) {
+            mouse::follow(&mut camera, from, *to);
+        }
+        camera
     }
 }
 
@@ -164,33 +263,5 @@ fn place(times: &[f64], time: f64) -> (usize, f64) {
 pub const FILM_KINDS: [(&str, &str); 3] = [("mp4", "MP4 (H.264)"), ("gif", "GIF"), ("", "PNG folder")];
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use mrtphys::Vec3;
-
-    fn take(from: f64, to: f64, fps: u32, speed: f64) -> Take {
-        let camera = Camera { eye: Vec3::Z, look_at: Vec3::ZERO, up: Vec3::Y, fov_deg: 45.0 };
-        Take { from, to, fps, speed, size: (64, 64), camera, look: Look::default(), path: "film.gif".into() }
-    }
-
-    #[test]
-    fn a_film_has_the_pictures_of_its_time() {
-        assert_eq!(take(0.0, 2.0, 30, 1.0).pictures(), 60);
-        assert_eq!(take(1.0, 2.0, 25, 0.1).pictures(), 250);
-        assert_eq!(take(0.0, 0.1 + 0.2, 10, 1.0).pictures(), 3, "0.30000000000000004 s");
-        assert_eq!(take(0.0, 0.0, 30, 1.0).pictures(), 1);
-        assert_eq!(take(2.0, 1.0, 30, 1.0).pictures(), 1);
-        assert!(take(0.0, 1e300, 240, 1e-9).pictures() > MOST_PICTURES);
-    }
-
-    #[test]
-    fn a_picture_lies_between_the_frames_round_it() {
-        let times = [1.0, 2.0, 4.0];
-        assert_eq!(place(&times, 0.0), (0, 0.0));
-        assert_eq!(place(&times, 1.0), (0, 0.0));
-        assert_eq!(place(&times, 1.25), (0, 0.25));
-        assert_eq!(place(&times, 3.0), (1, 0.5));
-        assert_eq!(place(&times, 9.0), (2, 0.0));
-        assert_eq!(place(&[1.0, 1.0, 2.0], 1.0), (1, 0.0), "two frames of one time");
-    }
-}
+#[path = "reel_tests.rs"]
+mod tests;

@@ -4,12 +4,9 @@ use super::app::Testbed;
 use super::desk::Desk;
 use super::reel::Still;
 use crate::output::Whole;
-use crate::testbed::session::{Command, Shot};
+use crate::testbed::session::Command;
 use eframe::egui;
-use mrtphys_view::{Frame, Look, Poses};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::time::Instant;
 
 /// Writes the present state as a scene, seen from where the viewer is.
 pub fn scene(app: &mut Testbed, context: &egui::Context, path: PathBuf) {
@@ -55,42 +52,21 @@ fn write(path: &Path, bytes: &[u8]) -> Result<String, String> {
 
 /// Writes what is on the screen, at the size that was chosen.
 pub fn picture(app: &mut Testbed, context: &egui::Context, path: PathBuf) {
-    let desk = &app.desk;
-    let Some(side) = desk.report().sides.first() else { return };
-    let look = Look { smooth: Some(true), ..desk.look };
-    let (mut frame, mut poses) = (Frame::new(desk.camera, look), Poses::default());
-    poses.set_between(&side.before.poses, &side.shot.poses, desk.report().pace.part(Instant::now()));
-    side.shot.stage.fill(desk.camera, look, &poses, &mut frame);
-    let still = Still { frame, size: app.export.size(), path };
+    let size = app.export.size();
+    let still = Still { panes: app.viewport.copy(&app.desk, size), size, theme: app.desk.look.theme, path };
     let ticket = app.jobs.begin("Drawing the picture", false, context);
     std::thread::spawn(move || ticket.end(still.make().map(Some)));
 }
 
 /// Makes a film from the recording.
 pub fn film(app: &mut Testbed, context: &egui::Context, path: PathBuf) {
-    let take = app.export.take(&app.desk, path);
+    let take = app.export.take(&app.desk, app.viewport.followed(), path);
     let ticket = app.jobs.begin(format!("Film {}", take.path.display()), true, context);
     app.desk.send(Command::Ask(Box::new(move |studio| {
-        let shots: Vec<Arc<Shot>> = around((studio.shots)(), take.from, take.to);
+        let frames = take.needed((studio.frames)());
         std::thread::spawn(move || {
-            let made = take.make(&shots, &ticket);
+            let made = take.make(&frames, &ticket);
             ticket.end(made);
         });
     })));
-}
-
-/// The frames of a range of time, with one more at either end.
-fn around(shots: Vec<Arc<Shot>>, from: f64, to: f64) -> Vec<Arc<Shot>> {
-    let mut found: Vec<Arc<Shot>> = Vec::new();
-    for shot in shots {
-        if shot.time <= from {
-            found.clear();
-        }
-        let last = shot.time >= to;
-        found.push(shot);
-        if last {
-            break;
-        }
-    }
-    found
 }

@@ -50,6 +50,11 @@ impl Layer {
         ),
     ];
 
+    /// Whether it can be drawn of frames of the recording, too. The others are of the present only.
+    pub fn is_recorded(self) -> bool {
+        matches!(self, Layer::Trails | Layer::Balls)
+    }
+
     fn bit(self) -> u8 {
         1 << self as u8
     }
@@ -87,9 +92,24 @@ impl Sight {
         self.layers = if on { self.layers | layer.bit() } else { self.layers & !layer.bit() };
     }
 
+    /// What is switched on and cannot be drawn of frames of the recording, in words.
+    pub fn unrecorded(&self) -> Vec<&'static str> {
+        let layers = Layer::ALL.iter().filter(|(layer, ..)| self.has(*layer) && !layer.is_recorded());
+        let mut names: Vec<&'static str> = layers.map(|(_, name, _)| *name).collect();
+        names.extend(match self.coloring {
+            Coloring::Own | Coloring::Kind => None,
+            Coloring::Speed => Some("Colors by speed"),
+            Coloring::Spin => Some("Colors by spin"),
+            Coloring::KineticEnergy => Some("Colors by kinetic energy"),
+            Coloring::Contacts => Some("Colors by contacts"),
+        });
+        names
+    }
+
     /// Asks for what is needed to draw it, and for nothing more.
     pub fn wish(&self, wish: &mut Wish) {
-        wish.contacts |= self.has(Layer::Contacts) || self.coloring.needs_contacts();
+        wish.contacts |= self.has(Layer::Contacts);
+        wish.touches |= self.coloring.needs_contacts();
         wish.impacts |= self.has(Layer::Impulses);
         wish.velocities |= self.has(Layer::Velocities) || self.has(Layer::Spins) || self.coloring.needs_velocities();
         wish.boxes |= self.has(Layer::Boxes);
@@ -160,6 +180,20 @@ mod tests {
             );
             seeing.set(layer, false);
             assert_eq!(seeing, Sight::default());
+        }
+    }
+
+    #[test]
+    fn what_the_recording_does_not_have_is_said() {
+        let mut sight = Sight::default();
+        Layer::ALL.iter().for_each(|l| sight.set(l.0, true));
+        assert_eq!(sight.unrecorded().len(), Layer::ALL.len() - 2);
+        assert!(!sight.unrecorded().contains(&"Trails"));
+        let by = |coloring| Sight { coloring, ..Sight::default() }.unrecorded();
+        for (coloring, name) in Coloring::ALL {
+            let is_known = !(coloring.needs_velocities() || coloring.needs_contacts());
+            assert_eq!(by(coloring).is_empty(), is_known, "{name}");
+            assert!(is_known || by(coloring)[0].ends_with(name.rsplit(' ').next().unwrap()), "{name}");
         }
     }
 

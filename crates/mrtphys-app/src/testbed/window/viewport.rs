@@ -3,16 +3,17 @@
 use super::ask::Inquiry;
 use super::desk::Desk;
 use super::detail::{self, Detail};
+use super::drawing::{self, View};
 use super::labels;
 use super::mouse::{self, Gesture, Held};
 use super::panel::throw_ball;
-use super::picture::{Picture, View};
-use crate::testbed::session::{Command, Grip, Report};
+use super::picture::Picture;
+use crate::testbed::session::{Command, Grip, Report, Side};
 use eframe::egui;
 use eframe::egui::{Key, Modifiers, PointerButton};
 use eframe::egui_wgpu::RenderState;
 use mrtphys::{BodyId, Vec3};
-use mrtphys_view::{Gpu, Hit, Ray, Renderer, ViewError};
+use mrtphys_view::{Frame, Gpu, Hit, Look, Ray, Renderer, ViewError};
 use std::time::{Duration, Instant};
 
 /// The pictures of a session's worlds.
@@ -27,8 +28,6 @@ pub struct Viewport {
     drag: Option<Drag>,
     followed: Option<(BodyId, Vec3)>,
     hover: Hover,
-    /// contacts of every body, and the state that they were asked for
-    contacts: (Inquiry<Vec<u32>>, usize),
     trouble: Option<String>,
     opened: u64,
 }
@@ -115,7 +114,6 @@ impl Viewport {
             drag: None,
             followed: None,
             hover: Hover::default(),
-            contacts: (Inquiry::default(), 0),
             trouble: None,
             opened: 0,
         })
@@ -129,7 +127,6 @@ impl Viewport {
         if self.opened != desk.opened {
             (self.opened, self.followed, self.drag) = (desk.opened, None, None);
             self.hover = Hover::default();
-            self.contacts = (Inquiry::default(), 0);
         }
         let panes = Pane::split(rect, desk.report().sides.len());
         self.prepare(desk, &panes, render);
@@ -137,9 +134,32 @@ impl Viewport {
         self.mouse(ui, desk, &panes, &response);
         self.follow(desk);
         desk.seeing.sight.wish(&mut desk.wish);
-        self.count_contacts(ui, desk);
         self.draw(ui, render, desk, &panes);
         self.overwrite(ui, desk, &panes, &response);
+    }
+
+    /// What is in the window, to be drawn at this size: every world's picture from its column on.
+    pub fn copy(&self, desk: &Desk, size: (u32, u32)) -> Vec<(u32, Frame, u32)> {
+        let report = desk.report();
+        let part = report.pace.part(Instant::now());
+        let columns = drawing::split(size.0, report.sides.len());
+        let copy = |((side, picture), (left, width)): ((&Side, &Picture), (u32, u32))| {
+            let view = View {
+                camera: desk.camera,
+                look: Look { smooth: Some(true), ..desk.look },
+                sight: desk.seeing.sight,
+                selected: desk.selected,
+                spring: None,
+                size: (width, size.1),
+            };
+            (left, picture.copy(side, part, &view), width)
+        };
+        report.sides.iter().zip(&self.pictures).zip(columns).map(copy).collect()
+    }
+
+    /// Where the body is that the camera follows \[m\].
+    pub fn followed(&self) -> Option<Vec3> {
+        self.followed.map(|(_, at)| at)
     }
 
     /// As many pictures as there are worlds, the bodies where they are now.
@@ -309,26 +329,6 @@ impl Viewport {
             mouse::follow(&mut desk.camera, from, to);
         }
         self.followed = now;
-    }
-
-    /// Counts the contacts of every body, where colors show them.
-    fn count_contacts(&mut self, ui: &egui::Ui, desk: &Desk) {
-        let (report, (inquiry, asked)) = (desk.report(), &mut self.contacts);
-        if !desk.seeing.sight.coloring.needs_contacts() {
-            return;
-        }
-        if *asked != moment(report) && !inquiry.is_waiting() {
-            *asked = moment(report);
-            let stage = report.sides[0].shot.stage.clone();
-            inquiry.ask(&desk.session, ui.ctx(), move |studio| {
-                let mut counts = Vec::new();
-                stage.count_contacts(&studio.loaded.world, &mut counts);
-                counts
-            });
-        }
-        if let Some(counts) = inquiry.answer() {
-            self.pictures[0].count_contacts(counts);
-        }
     }
 
     /// Draws what has changed, and sees to it that the window comes back when there is more to draw.

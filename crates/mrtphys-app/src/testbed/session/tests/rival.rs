@@ -99,3 +99,39 @@ fn an_edit_in_the_middle_of_a_frame_reaches_both_worlds_at_the_same_time() {
     assert_eq!(b.core.loaded().world.forces().len(), 1 + scene("thesis/cube-3").force_fields.len());
     assert_eq!(b.report().rival_agrees, Some(true));
 }
+
+#[test]
+fn a_rival_is_recorded_from_where_it_begins_to_where_it_ends() {
+    let mut b = bench("thesis/cube-3");
+    let rivals = |b: &Bench| -> Vec<u64> {
+        let frames = b.core.tape.frames();
+        frames.filter_map(|f| f.rival.as_ref().map(|r| (r.tick, f.shot.tick))).map(|(r, w)| r.min(w)).collect()
+    };
+    b.frames(3);
+    let settings = Settings { broad_phase: BroadPhaseKind::BruteForce, ..b.core.loaded().world.settings().clone() };
+    b.send(Command::Wish(Wish { trail: 50, ..Wish::default() }));
+    b.send(Command::Rival(Some(settings.clone()))).settle();
+    assert!(rivals(&b).is_empty());
+    b.frames(4);
+    assert_eq!(rivals(&b), [4, 5, 6, 7]);
+    let report = b.report();
+    assert_eq!([0, 1].map(|i| report.sides[i].extras.trail.len()), [7, 3], "the rival has a trail of its own");
+    // Gone back to, its picture is there at once, and its bodies are on the same stage.
+    let shot = b.core.tape.recorded(5).unwrap().rival.clone().unwrap();
+    b.send(Command::Seek(5));
+    assert!(Arc::ptr_eq(&b.report().sides[1].shot, &shot));
+    b.settle();
+    assert!(Arc::ptr_eq(&b.report().sides[1].shot, &shot) && b.report().rival_agrees == Some(true));
+    b.frames(1);
+    assert_eq!(rivals(&b), [4, 5, 6], "what came after is replaced");
+    let shot = b.report().sides[1].shot.clone();
+    assert!(
+        shot.tick == 6 && Arc::ptr_eq(&shot.stage, &b.core.tape.recorded(4).unwrap().rival.as_ref().unwrap().stage)
+    );
+    // Another rival: the pictures of the old one are not its own.
+    b.send(Command::Rival(Some(settings))).settle();
+    assert!(rivals(&b).is_empty());
+    b.frames(1);
+    b.send(Command::Rival(None)).settle();
+    assert!(rivals(&b).is_empty());
+}

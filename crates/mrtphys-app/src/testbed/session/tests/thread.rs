@@ -28,7 +28,7 @@ fn a_thread_runs_stops_and_goes_back() {
     wait_for(&mut s, "frame 5", |r| r.timeline.now == 5 && !r.timeline.restoring);
     let (tell, told) = std::sync::mpsc::channel();
     s.send(Command::Ask(Box::new(move |studio| {
-        let _ = tell.send((studio.loaded.world.state_hash(), (studio.shots)().len()));
+        let _ = tell.send((studio.loaded.world.state_hash(), (studio.frames)().len()));
     })));
     let (hash, shots) = told.recv_timeout(Duration::from_secs(10)).unwrap();
     let mut twin = bench("thesis/cube-3");

@@ -115,6 +115,7 @@ fn session_overhead() {
             let report = start.elapsed();
             let all = Wish {
                 contacts: true,
+                touches: true,
                 impacts: true,
                 velocities: true,
                 boxes: true,
