@@ -2,8 +2,7 @@
 
 use super::action::Action;
 use super::desk::Desk;
-use super::format::{count, duration};
-use super::quantity::{number, with_unit};
+use super::format::{count, duration, number, with_unit};
 use super::viewport::Pane;
 use crate::testbed::session::{Numbers, Report};
 use eframe::egui::{self, Align2, Color32, CornerRadius, FontId, Rect, Ui};

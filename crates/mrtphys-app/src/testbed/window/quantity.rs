@@ -1,55 +1,14 @@
-//! Numbers as people read and write them.
+//! Numbers as people write them: read, and entered.
 
+use super::format::{DIGITS, rounded, with_unit};
 use eframe::egui;
 use mrtphys::Vec3;
 use std::ops::RangeInclusive;
 
-/// Digits that are shown, and in vectors.
-const DIGITS: usize = 6;
+/// Digits that are shown in vectors.
 const FEWER_DIGITS: usize = 4;
 /// Width of a component of a vector [points].
 const COMPONENT: f32 = 62.0;
-
-/// A number with at most six significant digits: plain where it is short, else with a power of ten.
-pub fn number(x: f64) -> String {
-    rounded(x, DIGITS)
-}
-
-/// A number with so many significant digits.
-fn rounded(x: f64, digits: usize) -> String {
-    if x == f64::INFINITY {
-        return "infinite".into();
-    }
-    if !x.is_finite() {
-        return "not a number".into();
-    }
-    if x == 0.0 {
-        return "0".into();
-    }
-    // Rounded first: 9.99999 has another power of ten than it seems.
-    let scientific = format!("{x:.*e}", digits - 1);
-    let (mantissa, power) = scientific.split_once('e').unwrap_or((&scientific, "0"));
-    let power: i32 = power.parse().unwrap_or(0);
-    if (-3..digits as i32).contains(&power) {
-        let decimals = (digits as i32 - 1 - power).max(0) as usize;
-        return trimmed(&format!("{x:.decimals$}")).to_string();
-    }
-    format!("{}e{power}", trimmed(mantissa))
-}
-
-fn trimmed(digits: &str) -> &str {
-    if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
-}
-
-/// A number with its unit.
-pub fn with_unit(x: f64, unit: &str) -> String {
-    if unit.is_empty() { number(x) } else { format!("{} {unit}", number(x)) }
-}
-
-/// A relative deviation such as E/E0 - 1, always as a power of ten: 2.2e-15.
-pub fn deviation(x: f64) -> String {
-    if x == 0.0 || !x.is_finite() { number(x) } else { format!("{x:.1e}") }
-}
 
 /// Reads a number as people write it: `1/64`, `2.5`, `3e-4`, with a comma for the point, with the unit (`12 mm` for a
 /// value in m) or without.
@@ -187,33 +146,8 @@ impl<'a> Entry<'a> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::format::number;
     use super::*;
-
-    #[test]
-    fn numbers_are_short_and_true() {
-        for (x, text) in [
-            (0.0, "0"),
-            (9.80665, "9.80665"),
-            (-1.5, "-1.5"),
-            (9.9999999, "10"),
-            (133_888.0, "133888"),
-            (1_338_885.0, "1.33888e6"),
-            (0.001, "0.001"),
-            (0.00012, "1.2e-4"),
-            (2.22e-15, "2.22e-15"),
-            (f64::INFINITY, "infinite"),
-            (f64::NAN, "not a number"),
-        ] {
-            assert_eq!(number(x), text);
-        }
-        assert_eq!(with_unit(2.0, "m/s"), "2 m/s");
-        assert_eq!((rounded(-0.041_655_1, 4), rounded(99_999.0, 4)), ("-0.04166".into(), "1e5".into()));
-    }
-
-    #[test]
-    fn deviations_are_powers_of_ten() {
-        assert_eq!([2.24e-15, -0.5, 0.0].map(deviation), ["2.2e-15", "-5.0e-1", "0"]);
-    }
 
     #[test]
     fn what_is_shown_can_be_read() {

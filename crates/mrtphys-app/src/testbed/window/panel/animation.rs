@@ -3,7 +3,7 @@
 use crate::testbed::session::{Command, Numbers, PaceReport, RealTime, Report, time_code};
 use crate::testbed::window::action::Action;
 use crate::testbed::window::desk::Desk;
-use crate::testbed::window::format::{brief, count, number};
+use crate::testbed::window::format::{brief, count, reading};
 use crate::testbed::window::pending::Pending;
 use crate::testbed::window::table::{Row, rows};
 use eframe::egui;
@@ -161,7 +161,7 @@ fn clock_rows(n: &Numbers) -> Vec<Row<'static>> {
     let s = &n.settings;
     let per_second = u64::from(s.fps) * u64::from(s.steps_per_frame);
     vec![
-        Row::new("simulated time", format!("{} s", number(n.time)), "Since the start of the scene [s]"),
+        Row::new("simulated time", format!("{} s", reading(n.time)), "Since the start of the scene [s]"),
         Row::new("frame", count(n.frame), "Frames since the frame rate was set"),
         Row::new("physical steps", count(n.steps), "Since the start of the scene"),
         Row::new("step length", format!("1/{} s", count(per_second)), "Simulated time of a physical step [s]"),

@@ -2,7 +2,8 @@
 
 use super::making;
 use crate::testbed::window::desk::Desk;
-use crate::testbed::window::quantity::{self, Entry, with_unit};
+use crate::testbed::window::format::{number, with_unit};
+use crate::testbed::window::quantity::Entry;
 use eframe::egui;
 use mrtphys::def::{Mass, Surface};
 use mrtphys::math::Quat;
@@ -282,7 +283,7 @@ pub fn from_rotation_vector(degrees: Vec3) -> Quat {
 }
 
 fn orientation_hint(q: Quat) -> String {
-    let [x, y, z, w] = [q.x, q.y, q.z, q.w].map(quantity::number);
+    let [x, y, z, w] = [q.x, q.y, q.z, q.w].map(number);
     format!("angle times axis [degrees]; the quaternion is x {x}, y {y}, z {z}, w {w}")
 }
 

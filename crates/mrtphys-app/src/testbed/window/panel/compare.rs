@@ -2,9 +2,8 @@
 
 use crate::testbed::session::{Command, Numbers, Sample};
 use crate::testbed::window::desk::Desk;
-use crate::testbed::window::format::{count, drift, duration};
+use crate::testbed::window::format::{count, deviation, drift, duration};
 use crate::testbed::window::labels;
-use crate::testbed::window::quantity::deviation;
 use eframe::egui;
 use mrtphys::def::{BroadPhaseKind, FrictionLaw, ImpactMode, Integrator, Settings};
 use std::collections::VecDeque;

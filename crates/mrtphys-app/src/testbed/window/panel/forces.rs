@@ -3,8 +3,9 @@
 use super::fields::{self, Field, Placed, STANDARD};
 use crate::testbed::window::ask::Inquiry;
 use crate::testbed::window::desk::Desk;
+use crate::testbed::window::format::number;
 use crate::testbed::window::pending::Pending;
-use crate::testbed::window::quantity::{Entry, number};
+use crate::testbed::window::quantity::Entry;
 use eframe::egui;
 use mrtphys::def::Settings;
 use mrtphys::{Real, Vec3};

@@ -1,8 +1,7 @@
 //! Section Look closer: what is drawn over the bodies, and what their colors show.
 
 use crate::testbed::window::desk::Desk;
-use crate::testbed::window::format::count;
-use crate::testbed::window::quantity::number;
+use crate::testbed::window::format::{count, number};
 use crate::testbed::window::seeing::{LONGEST_TRAIL, Layer};
 use eframe::egui::{self, Color32};
 use mrtphys_view::explain::Inks;

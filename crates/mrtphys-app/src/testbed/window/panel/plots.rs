@@ -2,9 +2,8 @@
 
 use crate::testbed::window::ask::Inquiry;
 use crate::testbed::window::desk::Desk;
-use crate::testbed::window::format::brief;
+use crate::testbed::window::format::{brief, deviation, number};
 use crate::testbed::window::plot::{Chart, Gas, Histogram, Trace, csv, curves, power_of_ten};
-use crate::testbed::window::quantity::{deviation, number};
 use eframe::egui::{self, Color32};
 use egui_plot::{Bar, BarChart, HoverPosition, Line, LineStyle, Plot, PlotPoints, VLine};
 use mrtphys_view::Stage;
