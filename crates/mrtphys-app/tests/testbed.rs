@@ -65,6 +65,8 @@ fn steps_give_what_a_run_gives() {
     says_the_same(&status, &report);
     assert_eq!(status["says"]["transport.code"], "0 h: 0 ': 0 \": 6 f");
     assert_ne!(status["state_hash"], start["state_hash"]);
+    let asked = window.click_until("energies.hash", 0.5, |s| s["says"]["energies.hash"].is_string());
+    assert_eq!(asked["says"]["energies.hash"], report["state_hash"]);
     window.click("animation.restart");
     let again = window.until("the start", |s| s["steps"] == 0 && s["state_hash"].is_string());
     assert_eq!(again["state_hash"], start["state_hash"]);
@@ -187,6 +189,8 @@ fn a_film_is_made_from_the_recording() {
     window.keys(&["Right"; 12]);
     window.still_at(12);
     window.keys(&["ctrl+m"]);
+    let shown = window.until("the film's window", |s| s["widgets"]["film.gif"].is_array());
+    assert!(shown["says"]["film.missing"].is_null(), "everything that is seen is recorded");
     window.click_until("film.gif", 0.5, |s| s["says"]["film.format"] == "gif");
     window.click("film.save");
     window.name_file("film");

@@ -1,14 +1,17 @@
 //! Energies, and the ledger that says where every joule went.
 
+use super::digest::Digest;
 use crate::testbed::session::Numbers;
 use crate::testbed::window::desk::Desk;
-use crate::testbed::window::format::{drift, number};
+use crate::testbed::window::format::{drift, reading};
 use crate::testbed::window::table::{Row, rows};
 use eframe::egui;
 
 /// The section.
 #[derive(Default)]
-pub struct Energies {}
+pub struct Energies {
+    digest: Digest,
+}
 
 /// The ledger's entries in words, in its order, and what they mean.
 const ENTRIES: [(&str, &str); 9] = [
@@ -36,11 +39,12 @@ impl Energies {
             "Every stage of a step measures the energy it changes and books it here: the entries and the energy at the start add up to the energy now",
         );
         desk.probes.mark("energies.ledger", &header);
+        self.digest.show(ui, desk);
     }
 }
 
 fn joules(x: f64) -> String {
-    format!("{} J", number(x))
+    format!("{} J", reading(x))
 }
 
 fn energy_rows(n: &Numbers) -> Vec<Row<'static>> {

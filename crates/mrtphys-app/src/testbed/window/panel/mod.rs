@@ -5,6 +5,7 @@ mod bodies;
 mod body;
 mod broad_phase;
 mod compare;
+mod digest;
 mod energies;
 mod fields;
 mod forces;
