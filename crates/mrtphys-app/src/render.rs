@@ -6,10 +6,12 @@ use crate::output::{Whole, check_distinct, say};
 use crate::progress::Progress;
 use crate::render_args::RenderArgs;
 use crate::{run, setup};
+use mrtphys::Vec3;
 use mrtphys::World;
 use mrtphys_scene::Loaded;
 use mrtphys_view::film::{Folder, Gif, write_png};
-use mrtphys_view::{Camera, Film, Frame, Image, Look, Mode, Poses, Quality, Renderer, Stage, Theme, ViewError};
+use mrtphys_view::{Camera, Coloring, Dress, Film, Frame, Illumination, Image, Legend, Look, Mode, Poses, Quality};
+use mrtphys_view::{Renderer, Stage, Theme, ViewError};
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -95,6 +97,7 @@ fn render_here(args: &RenderArgs, quiet: bool) -> Outcome {
         let (w, h) = args.size;
         let driver = &reel.renderer.gpu().name;
         say(&format!("{name}: {n} picture{s} of {w} x {h} pixels in {wall:.1} s, drawn by {driver}\n"))?;
+        reel.colors.meaning().map_or(Ok(()), |text| say(&text))?;
     }
     done
 }
@@ -164,6 +167,7 @@ struct Reel {
     stage: Stage,
     camera: Camera,
     look: Look,
+    colors: Colors,
     size: (u32, u32),
     /// pictures per second of the film
     fps: u32,
@@ -193,19 +197,28 @@ impl Reel {
         if args.fit {
             camera.fit(&stage.bounds(), f64::from(args.size.0) / f64::from(args.size.1));
         }
-        let look = Look {
-            mode: Mode::ALL.iter().find(|m| m.1 == args.mode).map_or(Mode::default(), |m| m.0),
-            quality: args.quality.map_or(Quality::Auto, Quality::Level),
-            theme: if args.dark { Theme::Dark } else { Theme::Light },
-            smooth: Some(true),
-            ..Look::default()
-        };
+        let (look, colors) = (look_of(args), Colors::new(args));
         let last = start + (count - 1) as f64 * args.speed / f64::from(fps);
         let steps_total = ((last - now) / loaded.world.time_step()).ceil().max(0.0) as u64;
         let progress = Progress::new(quiet, steps_total);
         let (size, speed) = (args.size, args.speed);
         let (pictures, finished, steps) = (0, false, 0);
-        Ok(Reel { renderer, stage, camera, look, size, fps, speed, start, count, pictures, finished, steps, progress })
+        Ok(Reel {
+            renderer,
+            stage,
+            camera,
+            look,
+            colors,
+            size,
+            fps,
+            speed,
+            start,
+            count,
+            pictures,
+            finished,
+            steps,
+            progress,
+        })
     }
 
     /// Simulates, draws, and ends the film with what there is.
@@ -253,13 +266,93 @@ impl Reel {
             }
             let part = if to > from { ((time - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
             between.set_between(&before, &after, part);
-            self.stage.fill(self.camera, self.look, &between, &mut frame);
+            self.colors.read(&self.stage, world);
+            self.colors.fill(&self.stage, (self.camera, self.look), &between, &mut frame);
             let (width, height) = self.size;
             let drawn = self.renderer.render_into(&frame, width, height, &mut image);
             drawn.and_then(|()| film.put(&image)).map_err(|e| Ending::Film(failure(e)))?;
             self.pictures += 1;
         }
         Ok(())
+    }
+}
+
+fn look_of(args: &RenderArgs) -> Look {
+    Look {
+        mode: Mode::ALL.iter().find(|m| m.1 == args.mode).map_or(Mode::default(), |m| m.0),
+        illumination: Illumination::ALL
+            .iter()
+            .find(|i| i.1 == args.illumination)
+            .map_or(Illumination::default(), |i| i.0),
+        quality: args.quality.map_or(Quality::Auto, Quality::Level),
+        theme: if args.dark { Theme::Dark } else { Theme::Light },
+        shadows: !args.no_shadows,
+        smooth: Some(true),
+        walls: !args.no_walls,
+        marks: !args.no_marks,
+    }
+}
+
+/// What the colors of bodies show, and how far they have gone.
+#[derive(Default)]
+struct Colors {
+    coloring: Coloring,
+    velocities: Vec<(Vec3, Vec3)>,
+    contacts: Vec<u32>,
+    /// of the first picture and of the last
+    legends: Option<(Legend, Legend)>,
+}
+
+impl Colors {
+    fn new(args: &RenderArgs) -> Colors {
+        let named = |(_, name): &&(Coloring, &str)| name.replace(' ', "-") == args.color_by;
+        Colors { coloring: Coloring::ALL.iter().find(named).map_or(Coloring::Own, |c| c.0), ..Colors::default() }
+    }
+
+    /// Takes what is needed from the last step.
+    fn read(&mut self, stage: &Stage, world: &World) {
+        if self.coloring.needs_velocities() {
+            self.velocities.clear();
+            self.velocities.extend(stage.bodies().map(|id| world.motion(id).unwrap_or_default()));
+        }
+        if self.coloring.needs_contacts() {
+            stage.count_contacts(world, &mut self.contacts);
+        }
+    }
+
+    /// Fills a picture. The upper end of the colors only grows: in a film they do not jump up and down.
+    fn fill(&mut self, stage: &Stage, (camera, look): (Camera, Look), poses: &Poses, frame: &mut Frame) {
+        let dress = |most| Dress {
+            coloring: self.coloring,
+            velocities: &self.velocities,
+            contacts: &self.contacts,
+            most,
+            highlight: &[],
+        };
+        let mut legend = stage.fill_dressed(camera, look, &dress(None), poses, frame);
+        let most = self.legends.as_ref().map(|(_, last)| last.max);
+        if legend.as_ref().is_some_and(|now| most.is_some_and(|most| most > now.max)) {
+            legend = stage.fill_dressed(camera, look, &dress(most), poses, frame);
+        }
+        if let Some(legend) = legend {
+            let first = self.legends.take().map_or_else(|| legend.clone(), |(first, _)| first);
+            self.legends = Some((first, legend));
+        }
+    }
+
+    /// What they mean, in a line.
+    fn meaning(&self) -> Option<String> {
+        let (first, last) = self.legends.as_ref()?;
+        let hex = |[r, g, b]: [u8; 3]| format!("#{r:02x}{g:02x}{b:02x}");
+        let (Some(low), Some(high)) = (last.samples.first(), last.samples.last()) else {
+            let kinds: Vec<String> = last.kinds.iter().map(|(name, rgb)| format!("{name} {}", hex(*rgb))).collect();
+            return Some(format!("colors: {}: {}\n", last.title, kinds.join(", ")));
+        };
+        let value = |x: f64| if last.unit.is_empty() { x.to_string() } else { format!("{x} {}", last.unit) };
+        let grew =
+            if first.max < last.max { format!(", at the beginning to {}", value(first.max)) } else { String::new() };
+        let (low, high) = (hex(*low), hex(*high));
+        Some(format!("colors: {} from 0 ({low}) to {} ({high}){grew}\n", last.title, value(last.max)))
     }
 }
 

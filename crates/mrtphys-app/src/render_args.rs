@@ -13,6 +13,11 @@ const LARGEST: u32 = 16384;
 /// The names of the modes, as [`mrtphys_view::Mode`] has them.
 const MODES: [&str; 5] = ["wireframe", "hidden-line", "flat", "gouraud", "phong"];
 
+/// The names of the lighting equations, as [`mrtphys_view::Illumination`] has them.
+const ILLUMINATIONS: [&str; 4] = ["ambient", "lambert", "phong", "blinn"];
+/// The names of the colorings, as [`mrtphys_view::Coloring`] has them, in one word.
+const COLORINGS: [&str; 6] = ["own", "speed", "spin", "kinetic-energy", "kind", "contacts"];
+
 /// Options of `render`.
 #[derive(Args, Debug)]
 // Without graphics they are read, so that the refusal is about what was asked for, and not used.
@@ -47,6 +52,22 @@ pub struct RenderArgs {
     /// Triangulation of spheres, 0 (20 triangles) to 6 (81920); default: as fine as each one's size needs
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=6))]
     pub quality: Option<u8>,
+    /// The lighting equation: ambient (light from everywhere), lambert (and diffuse), phong or blinn (and highlights)
+    #[arg(long, value_name = "NAME", default_value = "blinn", value_parser = illumination)]
+    pub illumination: &'static str,
+    /// What the colors of bodies show: own (those of the scene), speed, spin, kinetic-energy, kind or contacts. What they
+    /// mean is said at the end
+    #[arg(long, value_name = "NAME", default_value = "own", value_parser = coloring)]
+    pub color_by: &'static str,
+    /// Without the shadows of the first light
+    #[arg(long)]
+    pub no_shadows: bool,
+    /// Without boundaries
+    #[arg(long)]
+    pub no_walls: bool,
+    /// Without the marks on spheres, by which one sees them spin
+    #[arg(long)]
+    pub no_marks: bool,
     /// Dark background
     #[arg(long)]
     pub dark: bool,
@@ -75,11 +96,23 @@ pub fn size(text: &str) -> Result<(u32, u32), String> {
 }
 
 fn mode(text: &str) -> Result<&'static str, String> {
-    if let Some(name) = MODES.iter().find(|m| **m == text) {
+    one_of(&MODES, text)
+}
+
+fn illumination(text: &str) -> Result<&'static str, String> {
+    one_of(&ILLUMINATIONS, text)
+}
+
+fn coloring(text: &str) -> Result<&'static str, String> {
+    one_of(&COLORINGS, text)
+}
+
+fn one_of(names: &'static [&'static str], text: &str) -> Result<&'static str, String> {
+    if let Some(name) = names.iter().find(|n| **n == text) {
         return Ok(name);
     }
-    let tip = closest(text, MODES.into_iter()).map(|m| format!("; did you mean '{m}'?")).unwrap_or_default();
-    Err(format!("there is {}{tip}", MODES.join(", ")))
+    let tip = closest(text, names.iter().copied()).map(|n| format!("; did you mean '{n}'?")).unwrap_or_default();
+    Err(format!("there is {}{tip}", names.join(", ")))
 }
 
 #[cfg(test)]
@@ -95,10 +128,16 @@ mod tests {
     }
 
     #[test]
-    fn modes_are_those_of_the_renderer() {
+    fn names_are_those_of_the_renderer() {
         assert_eq!(mode("flat"), Ok("flat"));
+        assert_eq!((illumination("lambert"), coloring("kinetic-energy")), (Ok("lambert"), Ok("kinetic-energy")));
+        assert!(coloring("kinetic energy").unwrap_err().contains("did you mean 'kinetic-energy'?"));
         assert!(mode("hidden-lines").unwrap_err().contains("did you mean 'hidden-line'?"));
         #[cfg(feature = "view")]
-        assert_eq!(MODES, mrtphys_view::Mode::ALL.map(|m| m.1));
+        {
+            assert_eq!(MODES, mrtphys_view::Mode::ALL.map(|m| m.1));
+            assert_eq!(ILLUMINATIONS, mrtphys_view::Illumination::ALL.map(|i| i.1));
+            assert_eq!(COLORINGS.map(|c| c.replace('-', " ")), mrtphys_view::Coloring::ALL.map(|c| c.1));
+        }
     }
 }

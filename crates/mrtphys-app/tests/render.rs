@@ -52,12 +52,85 @@ fn a_png_a_gif_an_mp4_and_a_folder_are_written() {
 }
 
 #[test]
+fn every_option_of_the_look_changes_the_picture() {
+    if !can_draw("every_option_of_the_look_changes_the_picture") {
+        return;
+    }
+    let folder = Folder::with_scenes("render-look");
+    let mut seen: Vec<(Vec<u8>, &str)> = Vec::new();
+    let same_as_default = ["", "--illumination blinn", "--color-by own"];
+    for options in [
+        "",
+        "--illumination blinn",
+        "--color-by own",
+        "--illumination ambient",
+        "--illumination lambert",
+        "--illumination phong",
+        "--color-by speed",
+        "--color-by spin",
+        "--color-by kinetic-energy",
+        "--color-by kind",
+        "--color-by contacts",
+        "--no-shadows",
+        "--no-walls",
+        "--no-marks",
+        "--mode flat",
+        "--dark",
+    ] {
+        let said = folder.run(&format!("render gas.toml -o a.png --size 160x120 --at 0.25 {options}")).expect(0);
+        assert_eq!(said.out.contains("colors:"), options.contains("color-by") && !options.contains("own"), "{options}");
+        let png = bytes(&folder, "a.png");
+        let like = seen.iter().find(|(other, _)| *other == png).map(|(_, name)| *name);
+        assert_eq!(like, same_as_default[1..].contains(&options).then_some(""), "{options}");
+        seen.push((png, options));
+    }
+}
+
+#[test]
+fn stderr_is_the_program_s_own() {
+    if !can_draw("stderr_is_the_program_s_own") {
+        return;
+    }
+    let folder = Folder::with_scenes("render-stderr");
+    let mut command = folder.command();
+    command.args("render gas.toml -o a.png --size 32x32 --quiet".split_whitespace());
+    command.env_remove("XDG_RUNTIME_DIR").env_remove("NODEVICE_SELECT");
+    let done = Done::from(command.output().unwrap()).expect(0);
+    assert_eq!(done.err, "", "no library complains of a missing XDG_RUNTIME_DIR");
+}
+
+#[test]
+fn what_colors_mean_is_said() {
+    if !can_draw("what_colors_mean_is_said") {
+        return;
+    }
+    let folder = Folder::new("render-colors");
+    let ball = "[[body]]\nshape = { kind = \"sphere\", radius = 0.1 }\n";
+    let fall = "[[force_field]]\nkind = \"uniform\"\nacceleration = [0, -2, 0]\n";
+    let text = format!("format = 1\n{fall}{ball}position = [0, 0, 0]\nvelocity = [0, -3, 0]\n");
+    folder.put("fall.toml", &text);
+    let said = folder.run("render fall.toml -o a.png --size 32x32 --color-by speed").expect(0);
+    assert!(said.out.contains("colors: speed from 0 (#440154) to 5 m/s (#"), "{}", said.out);
+    // After two seconds 7 m/s: above the 5 of the beginning.
+    let said = folder.run("render fall.toml -o a.gif --size 32x32 --color-by speed --seconds 2 --fps 4").expect(0);
+    assert!(said.out.contains("to 10 m/s (#") && said.out.contains("), at the beginning to 5 m/s\n"), "{}", said.out);
+    // Thrown up, it is slow on top: the colors stay.
+    folder.put("rise.toml", &text.replace("-3", "3"));
+    let said = folder.run("render rise.toml -o b.gif --size 32x32 --color-by speed --seconds 1.5 --fps 4").expect(0);
+    assert!(said.out.contains("to 5 m/s (#") && !said.out.contains("beginning"), "{}", said.out);
+    let said = folder.run("render fall.toml -o a.png --size 32x32 --color-by kind").expect(0);
+    assert!(said.out.contains("colors: kind of shape: sphere #0072b2\n"), "{}", said.out);
+}
+
+#[test]
 fn what_cannot_be_drawn_is_refused_before_anything_is_written() {
     let folder = Folder::with_scenes("render-refused");
     folder.run("render gas.toml -o a.jpg").refused(&["a.jpg", ".png", ".gif", ".mp4"]);
     folder.run("render a.gif -o a.gif").refused(&["same file"]);
     folder.run("render gas.toml -o a.png --size 10").refused(&["WIDTHxHEIGHT"]);
     folder.run("render gas.toml -o a.png --mode phongg").refused(&["did you mean 'phong'?"]);
+    folder.run("render gas.toml -o a.png --illumination blin").refused(&["did you mean 'blinn'?"]);
+    folder.run("render gas.toml -o a.png --color-by sped").refused(&["did you mean 'speed'?"]);
     folder.run("render gas.toml -o a.png --seconds 1").refused(&["--seconds", "--at"]);
     folder.run("render gas.toml -o a.gif --seconds 100000000").refused(&["pictures"]);
     folder.run("render gas.toml").refused(&["--output"]);
