@@ -177,6 +177,9 @@ pub struct Frame {
     pub lights: Vec<Light>,
     /// how it looks
     pub look: Look,
+    /// the part of its pixels, across, that the picture is drawn with before it is shown enlarged: lines and outlines are then as
+    /// wide as they would be without. 1: all of them
+    pub part: f32,
     /// origin of the drawing coordinates \[m\]
     pub origin: Vec3,
     /// unit of the drawing coordinates \[m\]
@@ -214,6 +217,7 @@ impl Frame {
             camera,
             lights: Vec::new(),
             look,
+            part: 1.0,
             origin,
             unit,
             spheres: Vec::new(),
@@ -224,7 +228,7 @@ impl Frame {
         }
     }
 
-    /// Empties the picture but for its overlay, and moves the camera. Batches stay, without bodies.
+    /// Empties the picture but for its overlay and its `part`, and moves the camera. Batches stay, without bodies.
     pub fn restart(&mut self, camera: Camera, look: Look) {
         (self.origin, self.unit) = coordinates(&camera);
         (self.camera, self.look) = (camera, look);

@@ -4,6 +4,7 @@
 use crate::frame::{Frame, Highlighted, Instance, Mode, Quality, Wall};
 use crate::mesh::{FINEST, level_for};
 use crate::overlay::{Block, Line};
+use crate::uniforms::known;
 use mrtphys::Vec3;
 use mrtphys::math::Quat;
 use std::ops::Range;
@@ -122,6 +123,8 @@ impl Lists {
     fn spheres(&mut self, frame: &Frame, detail: Detail) {
         let eye = frame.place(frame.camera.eye);
         let pixels = f64::from(detail.height) / 2.0 / frame.camera.tan_half_fov();
+        // Triangles that are seen as such do not change with the number of pixels.
+        let whole = 1.0 / f64::from(known(frame.part));
         let crowd = (frame.spheres.len() as f64 / CROWD as f64).max(1.0).sqrt();
         let radius_of = |s: &Instance| {
             let d = [0, 1, 2].map(|k| f64::from(s.position[k] - eye[k]));
@@ -130,9 +133,11 @@ impl Lists {
         };
         let level_of = |s: &Instance| match frame.look.quality {
             Quality::Level(level) => level.min(FINEST),
-            Quality::Auto if frame.look.mode.has_lines() => line_level(radius_of(s)),
+            Quality::Auto if frame.look.mode.has_lines() => line_level(whole * radius_of(s)),
             // Each triangle is seen as one: more of them would only look like Gouraud's.
-            Quality::Auto if frame.look.mode == Mode::Flat => level_for(radius_of(s), detail.tolerance * crowd).min(3),
+            Quality::Auto if frame.look.mode == Mode::Flat => {
+                level_for(whole * radius_of(s), detail.tolerance * crowd).min(3)
+            }
             Quality::Auto => level_for(radius_of(s), detail.tolerance * crowd),
         };
         self.levels.clear();
@@ -161,10 +166,11 @@ impl Lists {
         self.outline = [detail.width, detail.height, 0, 0];
         let eye = frame.place(frame.camera.eye);
         let pixels = f64::from(detail.height) / 2.0 / frame.camera.tan_half_fov();
+        let smallest = SMALLEST_OUTLINED * f64::from(known(frame.part));
         for Highlighted { batch, body } in &frame.highlight {
             let d = [0, 1, 2].map(|k| f64::from(body.position[k] - eye[k]));
             let distance = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
-            let scale = body.scale.max((SMALLEST_OUTLINED * distance / pixels) as f32);
+            let scale = body.scale.max((smallest * distance / pixels) as f32);
             let level = level_for(f64::from(scale) * pixels / distance.max(f64::from(scale)), detail.tolerance);
             let form = match batch {
                 Some(i) if *i < frame.batches.len() => Form::Batch(*i),

@@ -149,7 +149,7 @@ impl Renderer {
         let (width, height) = canvas.size();
         let tolerance = if self.gpu.is_software { ROUNDNESS.1 } else { ROUNDNESS.0 };
         let uniforms = Uniforms::new(frame, width, height, self.shadow_size);
-        self.lists.collect(frame, Detail { width, height, tolerance, line_width: edge_width(height) });
+        self.lists.collect(frame, Detail { width, height, tolerance, line_width: edge_width(frame, height) });
         self.gpu.queue.write_buffer(&self.picture, 0, bytemuck::bytes_of(&uniforms));
         self.instances.put(&self.gpu, bytemuck::cast_slice(&self.lists.instances))?;
         self.strokes.put(&self.gpu, bytemuck::cast_slice(&self.lists.strokes))?;

@@ -61,7 +61,7 @@ impl Uniforms {
             shadow: shadow.to_f32(),
             eye: four(frame.place(frame.camera.eye), 1.0),
             up: four(single(up), 0.0),
-            size: [width as f32, height as f32, edge_width(height), 2.0 * radius as f32 / shadow_size as f32],
+            size: [width as f32, height as f32, edge_width(frame, height), 2.0 * radius as f32 / shadow_size as f32],
             counts: [count as f32, f32::from(radius > 0.0), 1.0 / shadow_size as f32, equation],
             sky: four(linear(colors.sky), 1.0),
             base: four(linear(colors.base), 1.0),
@@ -78,9 +78,21 @@ impl Uniforms {
     }
 }
 
-/// Lines keep their part of the picture in large ones, and stay a pixel wide in small ones.
-pub fn edge_width(height: u32) -> f32 {
-    EDGE_WIDTH * (height as f32 / 720.0).max(1.0)
+/// Lines keep their part of the picture in large ones, and stay a pixel wide in small ones. What counts is the picture as it is
+/// shown.
+pub fn edge_width(frame: &Frame, height: u32) -> f32 {
+    EDGE_WIDTH * line_factor(height, frame.part)
+}
+
+/// How wide lines are in a picture of this height \[pixels\], drawn with a part of its pixels: to those of one 720 pixels high.
+pub fn line_factor(height: u32, part: f32) -> f32 {
+    let part = known(part);
+    (height as f32 / part / 720.0).max(1.0) * part
+}
+
+/// A part that is none is the whole.
+pub fn known(part: f32) -> f32 {
+    if part > 0.0 && part < 1.0 { part } else { 1.0 }
 }
 
 /// The lights that shine in a picture.

@@ -6,6 +6,7 @@ use common::{BLUE, SIZE, apart, ball, bright, camera, changed, count, draw, empt
 use mrtphys::Vec3;
 use mrtphys::math::Quat;
 use mrtphys::shape::{Polyhedron, Quadrangle};
+use mrtphys_view::explain::Pen;
 use mrtphys_view::frame::{Batch, Highlighted, Light};
 use mrtphys_view::mesh::Mesh;
 use mrtphys_view::{Frame, Illumination, Look, Mode, Theme};
@@ -200,4 +201,50 @@ fov_deg = 60
     };
     assert!(shade(Illumination::Blinn) > 60);
     assert!(shade(Illumination::Ambient).abs() < 12);
+}
+
+/// Ink of a color along the middle row: pixels, each by how much of the color it has, as parts of the row.
+fn ink(image: &mrtphys_view::Image, plain: &mrtphys_view::Image, color: [u8; 3]) -> f64 {
+    let row = (0..image.width).map(|x| {
+        let [p, before] = [image, plain].map(|i| i.pixel(x, image.height / 2).unwrap());
+        let whole = f64::from(apart(before, color)).max(1.0);
+        (f64::from(apart(p, before)) / whole).min(1.0)
+    });
+    row.sum::<f64>() / f64::from(image.width)
+}
+
+#[test]
+fn lines_and_outlines_keep_their_width_when_pixels_are_saved() {
+    let Some(mut r) = renderer("lines_and_outlines_keep_their_width_when_pixels_are_saved") else { return };
+    let bounds = mrtphys::bounds::Aabb { min: Vec3::splat(-1.0), max: Vec3::splat(1.0) };
+    for full in [640u32, 1440] {
+        let mut inks: Vec<[f64; 3]> = Vec::new();
+        for part in [1.0f32, 0.75, 0.5] {
+            let size = (full as f32 * part) as u32;
+            let mut seen = |mode: Mode, fill: &dyn Fn(&mut Frame), color: [u8; 3]| {
+                let mut frame = empty(Look { mode, smooth: Some(true), shadows: false, ..Look::default() });
+                frame.part = part;
+                let plain = r.render(&frame, size, size).unwrap();
+                fill(&mut frame);
+                ink(&r.render(&frame, size, size).unwrap(), &plain, color)
+            };
+            let pen = Pen::new(&camera(), &bounds, Theme::Light, size).reduced(size, part);
+            let boxes = seen(Mode::Phong, &|frame| drop(pen.boxes(&mut frame.overlay, &[bounds])), pen.inks.aabb);
+            let ball = |frame: &Frame| frame.instance(Vec3::ZERO, 0.5, Quat::IDENTITY, BLUE).unwrap();
+            let colors = Theme::Light.colors();
+            let outline = seen(
+                Mode::Wireframe,
+                &|frame| frame.highlight.push(Highlighted { batch: None, body: ball(frame) }),
+                colors.accent,
+            );
+            let edges = seen(Mode::Wireframe, &|frame| frame.spheres.push(ball(frame)), colors.ink);
+            inks.push([boxes, outline, edges]);
+        }
+        for (k, what) in ["lines", "outlines", "edges"].into_iter().enumerate() {
+            let [whole, rest @ ..] = &inks[..] else { unreachable!() };
+            assert!(whole[k] > 2.0 / f64::from(full), "{what}: {inks:?}");
+            let off = rest.iter().map(|i| (i[k] / whole[k] - 1.0).abs()).fold(0.0, f64::max);
+            assert!(off < 0.35, "{what} of {full} pixels: {inks:?}");
+        }
+    }
 }

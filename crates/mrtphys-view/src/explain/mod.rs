@@ -14,6 +14,7 @@ mod volumes;
 use crate::camera::Camera;
 use crate::overlay::{Line, Overlay, Point, Rgba};
 use crate::palette::{Rgb, Theme};
+use crate::uniforms::line_factor;
 use mrtphys::bounds::Aabb;
 use mrtphys::{Real, Vec3};
 
@@ -41,6 +42,8 @@ const LEAST: Real = 0.5;
 const LONGEST: Real = 0.15;
 /// The length of a contact's normal, relative to what is seen.
 const NORMAL: Real = 0.05;
+/// Width of a thin line \[pixels\] in a picture 720 pixels high.
+const THIN: f32 = 1.25;
 /// What is infinite is drawn to so many diagonals of the scene from its middle.
 const REGION: Real = 2.0;
 
@@ -112,7 +115,8 @@ pub struct Pen {
 }
 
 impl Pen {
-    /// For a picture of this height \[pixels\] of a scene with these bounds.
+    /// For a picture of this height \[pixels\] of a scene with these bounds. For one that is drawn with fewer pixels than it is shown
+    /// with: [`Pen::reduced`].
     pub fn new(camera: &Camera, bounds: &Aabb, theme: Theme, height: u32) -> Pen {
         let seen = 2.0 * camera.distance() * camera.tan_half_fov();
         let diagonal = (bounds.max - bounds.min).length();
@@ -127,9 +131,15 @@ impl Pen {
             theme,
             eye: camera.eye,
             length,
-            thin: 1.25 * (height as f32 / 720.0).max(1.0),
+            thin: THIN * line_factor(height, 1.0),
             region: Aabb { min: middle - around, max: middle + around },
         }
+    }
+
+    /// For a picture of this height \[pixels\] that has only this part of the pixels, across, that it is shown with
+    /// ([`Frame::part`](crate::Frame::part)): what is drawn is as wide as it would be without.
+    pub fn reduced(self, height: u32, part: f32) -> Pen {
+        Pen { thin: THIN * line_factor(height, part), ..self }
     }
 
     fn line(&self, from: Vec3, to: Vec3, color: Rgba, width: f32) -> Line {

@@ -21,6 +21,8 @@ pub struct View {
     pub spring: Option<(Vec3, Vec3)>,
     /// width and height \[pixels\]
     pub size: (u32, u32),
+    /// part of the pixels, across, that it is shown with
+    pub part: f32,
 }
 
 /// A world at one moment, as far as it is known: what was not recorded of the past is not there.
@@ -67,7 +69,9 @@ pub fn fill(frame: &mut Frame, moment: &Moment<'_>, view: &View, scales: &mut Sc
     let legend = moment.stage.fill_dressed(view.camera, view.look, &dress, moment.poses, frame);
     frame.overlay.clear();
     let mut told = Told { drawn: Vec::new(), legends: legend.into_iter().collect() };
+    frame.part = view.part;
     let pen = Pen::new(&view.camera, &moment.stage.bounds(), view.look.theme, view.size.1);
+    let pen = pen.reduced(view.size.1, view.part);
     explain(frame, moment, (view.sight, chosen), (&pen, scales), &mut told);
     if let Some((held, hand)) = view.spring {
         pen.grip(&mut frame.overlay, held, hand);
@@ -155,6 +159,7 @@ mod tests {
             selected: None,
             spring: None,
             size: (640, 480),
+            part: 1.0,
         }
     }
 

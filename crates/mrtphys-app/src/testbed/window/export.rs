@@ -106,7 +106,7 @@ impl Export {
         let size = if FILM_KINDS[self.kind].0 == "mp4" { ((w & !1).max(2), (h & !1).max(2)) } else { (w, h) };
         let look = Look { smooth: Some(true), ..desk.look };
         let (camera, sight, selected) = (desk.camera, desk.seeing.sight, desk.selected);
-        let view = View { camera, look, sight, selected, spring: None, size };
+        let view = View { camera, look, sight, selected, spring: None, size, part: 1.0 };
         Take { from, to, fps, speed, view, follow, rival: self.rival == (true, true), path }
     }
 

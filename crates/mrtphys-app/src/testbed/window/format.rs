@@ -159,7 +159,8 @@ mod tests {
     /// Every form is within half a unit of its last digit, and is read as a number again.
     #[test]
     fn what_is_written_is_the_nearest_number_of_its_length() {
-        let forms: [(fn(f64) -> String, i32); 3] = [(number, 6), (reading, 7), (brief, 3)];
+        type Writes = fn(f64) -> String;
+        let forms: [(Writes, i32); 3] = [(number, 6), (reading, 7), (brief, 3)];
         for power in -30..30 {
             for m in [1.0, 1.234_567_890_1, -4.999_999_9, 9.999_999_9] {
                 let x = m * 10f64.powi(power);

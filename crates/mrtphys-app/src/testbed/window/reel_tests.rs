@@ -7,7 +7,7 @@ use mrtphys_view::{Look, Stage};
 fn take(from: f64, to: f64, fps: u32, speed: f64) -> Take {
     let camera = Camera { eye: Vec3::Z, look_at: Vec3::ZERO, up: Vec3::Y, fov_deg: 45.0 };
     let (look, sight) = (Look { smooth: Some(true), ..Look::default() }, Sight::default());
-    let view = View { camera, look, sight, selected: None, spring: None, size: (64, 64) };
+    let view = View { camera, look, sight, selected: None, spring: None, size: (64, 64), part: 1.0 };
     Take { from, to, fps, speed, view, follow: None, rival: true, path: "film.gif".into() }
 }
 

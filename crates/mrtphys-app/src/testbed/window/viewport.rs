@@ -151,6 +151,7 @@ impl Viewport {
                 selected: desk.selected,
                 spring: None,
                 size: (width, size.1),
+                part: 1.0,
             };
             (left, picture.copy(side, part, &view), width)
         };
@@ -346,6 +347,7 @@ impl Viewport {
                 selected: desk.selected,
                 spring: self.spring(desk, report, *pane),
                 size: pixels(pane.rect.size() * ui.ctx().pixels_per_point(), factor, self.largest(render)),
+                part: factor,
             };
             if !self.pictures[i].is_stale(report, part, &view) {
                 continue;
