@@ -2,6 +2,7 @@
 //! scene alone, each block writes its own output, and outputs are put together in the order of the blocks.
 
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Items in a block of a streaming loop. One block or less runs on the calling thread, without any hand-over.
 pub const BLOCK: usize = 4096;
@@ -53,4 +54,33 @@ pub fn sum_blocks(count: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {
     }
     let parts: Vec<f64> = (0..blocks).into_par_iter().map(block).collect();
     parts.into_iter().sum()
+}
+
+/// Runs `f(range of indices, output)` over ranges of `size` of the indices below `count`, with one output per range; `outputs`
+/// grows to the number of ranges and keeps its memory. Returns the number of ranges. A single range runs on the calling
+/// thread, without any hand-over.
+pub fn ranges_into<O: Default + Send>(
+    count: usize,
+    size: usize,
+    outputs: &mut Vec<O>,
+    f: impl Fn(Range<usize>, &mut O) + Sync,
+) -> usize {
+    let ranges = count.div_ceil(size);
+    if outputs.len() < ranges {
+        outputs.resize_with(ranges, O::default);
+    }
+    let range = |i: usize| i * size..((i + 1) * size).min(count);
+    if ranges == 1 {
+        f(range(0), &mut outputs[0]);
+    } else {
+        outputs[..ranges].par_iter_mut().enumerate().for_each(|(i, out)| f(range(i), out));
+    }
+    ranges
+}
+
+/// Cuts consecutive pieces off a slice.
+pub fn cut<'a, T>(rest: &mut &'a mut [T], length: usize) -> &'a mut [T] {
+    let (piece, after) = std::mem::take(rest).split_at_mut(length);
+    *rest = after;
+    piece
 }
