@@ -10,6 +10,7 @@ use crate::broad::{BoundsView, Cell};
 use crate::math::Vec3;
 use crate::par;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// How a sort is cut into parts. The result does not depend on it.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +47,7 @@ pub(super) struct Dense {
 struct Dealt {
     /// cell of each body, in the order in which they came
     cell_of: Vec<u32>,
-    /// bodies, slab by slab
+    /// bodies, slab by slab; unused where there is one slab
     entries: Vec<Entry>,
     /// where each slab ends in `entries`
     ends: Vec<u32>,
@@ -61,6 +62,38 @@ struct Entry {
     point: [f32; 3],
 }
 
+/// What dealing reads.
+struct Dealer<'a> {
+    frame: Frame,
+    stride: [u32; 2],
+    members: Option<&'a [u32]>,
+    balls: &'a [Ball],
+    /// slabs of `1 << shift` cells
+    shift: u32,
+    slabs: usize,
+    /// bodies in a block
+    block: usize,
+}
+
+impl Dealer<'_> {
+    #[inline(always)]
+    fn slot(&self, k: usize) -> u32 {
+        self.members.map_or(k as u32, |m| m[k])
+    }
+
+    #[inline(always)]
+    fn cell(&self, k: usize) -> u32 {
+        let [x, y, z] = self.frame.inside(self.balls[self.slot(k) as usize].center);
+        x + y * self.stride[0] + z * self.stride[1]
+    }
+
+    #[inline(always)]
+    fn entry(&self, k: usize, cell: u32) -> Entry {
+        let slot = self.slot(k);
+        Entry { cell, slot, point: self.frame.rounded(self.balls[slot as usize].center) }
+    }
+}
+
 impl Dealt {
     /// The bodies of a slab.
     fn of_slab(&self, slab: usize) -> &[Entry] {
@@ -68,53 +101,30 @@ impl Dealt {
         &self.entries[first..self.ends[slab] as usize]
     }
 
-    /// Deals bodies out: `slot` of the bodies `0..count`, `cell` of a position, slabs of `1 << shift` cells.
-    fn deal(&mut self, dense: &Dealer<'_>, first: usize, count: usize) {
-        let slot = |k: usize| dense.members.map_or((first + k) as u32, |m| m[first + k]);
-        let (frame, [sx, sxy]) = (dense.frame, dense.stride);
-        self.entries.resize(count, Entry::default());
-        self.ends.clear();
-        self.ends.resize(dense.slabs, 0);
-        let cell = |ball: &Ball| {
-            let [x, y, z] = frame.inside(ball.center);
-            ((x + 1) as usize + (y + 1) as usize * sx + (z + 1) as usize * sxy) as u32
-        };
-        if dense.slabs == 1 {
-            self.ends[0] = count as u32;
-            for (k, entry) in self.entries.iter_mut().enumerate() {
-                let ball = &dense.balls[slot(k) as usize];
-                *entry = Entry { cell: cell(ball), slot: slot(k), point: frame.rounded(ball.center) };
-            }
+    /// Deals out the bodies of a range.
+    fn deal(&mut self, dealer: &Dealer<'_>, range: Range<usize>) {
+        self.cell_of.clear();
+        self.cell_of.extend(range.clone().map(|k| dealer.cell(k)));
+        if dealer.slabs == 1 {
             return;
         }
-        self.cell_of.clear();
-        self.cell_of.extend((0..count).map(|k| {
-            let c = cell(&dense.balls[slot(k) as usize]);
-            self.ends[(c >> dense.shift) as usize] += 1;
-            c
-        }));
+        self.entries.resize(range.len(), Entry::default());
+        self.ends.clear();
+        self.ends.resize(dealer.slabs, 0);
+        for &cell in &self.cell_of {
+            self.ends[(cell >> dealer.shift) as usize] += 1;
+        }
         let mut sum = 0;
         for end in &mut self.ends {
             sum += std::mem::replace(end, sum);
         }
         // What was the start of each slab moves on to its end.
-        for (k, &cell) in self.cell_of.iter().enumerate() {
-            let place = &mut self.ends[(cell >> dense.shift) as usize];
-            let point = frame.rounded(dense.balls[slot(k) as usize].center);
-            self.entries[*place as usize] = Entry { cell, slot: slot(k), point };
+        for (k, &cell) in range.zip(&self.cell_of) {
+            let place = &mut self.ends[(cell >> dealer.shift) as usize];
+            self.entries[*place as usize] = dealer.entry(k, cell);
             *place += 1;
         }
     }
-}
-
-/// What dealing reads.
-struct Dealer<'a> {
-    frame: Frame,
-    stride: [usize; 2],
-    members: Option<&'a [u32]>,
-    balls: &'a [Ball],
-    shift: u32,
-    slabs: usize,
 }
 
 /// What a slab writes: its part of everything that is sorted.
@@ -131,31 +141,25 @@ struct Slab<'a> {
 impl Slab<'_> {
     /// Counting sort. `start[c]` counts the bodies of cell c; summed up, it is where cell c starts, and moves on as bodies of
     /// cell c find their places, so that at last it is where the next cell starts.
-    fn sort(self, slab: usize, dealt: &[Dealt]) {
+    fn sort(self, in_cells: impl Iterator<Item = u32>, entries: impl Iterator<Item = Entry>) {
         let Slab { first_cell, first_place, start, slots, cells, points: [x, y, z] } = self;
         // All of one length: one check for all.
         let n = slots.len();
         let (cells, x, y, z) = (&mut cells[..n], &mut x[..n], &mut y[..n], &mut z[..n]);
         start.fill(0);
-        for block in dealt {
-            for e in block.of_slab(slab) {
-                start[(e.cell - first_cell) as usize] += 1;
-            }
-        }
+        in_cells.for_each(|cell| start[(cell - first_cell) as usize] += 1);
         let mut sum = first_place;
         for s in start.iter_mut() {
             sum += std::mem::replace(s, sum);
         }
-        for block in dealt {
-            for e in block.of_slab(slab) {
-                let place = &mut start[(e.cell - first_cell) as usize];
-                let at = (*place - first_place) as usize;
-                *place += 1;
-                slots[at] = e.slot;
-                cells[at] = e.cell;
-                [x[at], y[at], z[at]] = e.point;
-            }
-        }
+        entries.for_each(|e| {
+            let place = &mut start[(e.cell - first_cell) as usize];
+            let at = (*place - first_place) as usize;
+            *place += 1;
+            slots[at] = e.slot;
+            cells[at] = e.cell;
+            [x[at], y[at], z[at]] = e.point;
+        });
     }
 }
 
@@ -177,46 +181,54 @@ impl Dense {
         let cells_per_slab = total.div_ceil((count / parts.slab).max(1)).next_power_of_two();
         let shift = cells_per_slab.trailing_zeros();
         let slabs = total.div_ceil(cells_per_slab);
-        let dealer = Dealer { frame, stride: self.stride, members, balls, shift, slabs };
-        let blocks = par::ranges_into(count, parts.block, &mut self.dealt, |range, dealt| {
-            dealt.deal(&dealer, range.start, range.len());
-        });
+        let stride = self.stride.map(|s| s as u32);
+        let dealer = Dealer { frame, stride, members, balls, shift, slabs, block: parts.block };
+        let blocks = par::ranges_into(count, parts.block, &mut self.dealt, |range, dealt| dealt.deal(&dealer, range));
         self.start.resize(total + 2, 0);
         self.slots.resize(count, 0);
         self.cells.resize(count, 0);
         self.points.resize(count);
         self.start[0] = 0;
         self.start[total + 1] = count as u32;
-        self.sort_slabs(blocks, slabs, cells_per_slab, total);
+        self.sort_slabs(&dealer, blocks, total);
     }
 
     /// Sorts every slab, each into its own part of the arrays.
-    fn sort_slabs(&mut self, blocks: usize, slabs: usize, cells_per_slab: usize, total: usize) {
+    fn sort_slabs(&mut self, dealer: &Dealer<'_>, blocks: usize, total: usize) {
         let dealt = &self.dealt[..blocks];
-        let (mut start, mut slots, mut cells) = (&mut self.start[1..=total], &mut self.slots[..], &mut self.cells[..]);
-        let mut points = self.points.axes();
-        let mut first_place = 0;
+        let mut start = &mut self.start[1..=total];
+        if dealer.slabs == 1 {
+            let points = self.points.axes();
+            let task =
+                Slab { first_cell: 0, first_place: 0, start, slots: &mut self.slots, cells: &mut self.cells, points };
+            let in_cells = dealt.iter().flat_map(|block| block.cell_of.iter().copied());
+            let entries = dealt.iter().enumerate().flat_map(|(b, block)| {
+                let first = b * dealer.block;
+                block.cell_of.iter().enumerate().map(move |(k, &cell)| dealer.entry(first + k, cell))
+            });
+            return task.sort(in_cells, entries);
+        }
+        let (mut slots, mut cells, mut points) = (&mut self.slots[..], &mut self.cells[..], self.points.axes());
+        let (cells_per_slab, mut first_place) = (1 << dealer.shift, 0);
         let of_slab = |slab: usize| {
-            let (first_cell, count) =
-                (slab * cells_per_slab, dealt.iter().map(|d| d.of_slab(slab).len()).sum::<usize>());
+            let first_cell = slab * cells_per_slab;
+            let count = dealt.iter().map(|block| block.of_slab(slab).len()).sum::<usize>();
             let task = Slab {
                 first_cell: first_cell as u32,
                 first_place: first_place as u32,
                 start: par::cut(&mut start, cells_per_slab.min(total - first_cell)),
                 slots: par::cut(&mut slots, count),
                 cells: par::cut(&mut cells, count),
-                points: points.each_mut().map(|p| par::cut(p, count)),
+                points: points.each_mut().map(|axis| par::cut(axis, count)),
             };
             first_place += count;
             task
         };
-        let sort = |(slab, task): (usize, Slab<'_>)| task.sort(slab, dealt);
-        let tasks: Vec<Slab<'_>> = (0..slabs).map(of_slab).collect();
-        if slabs == 1 {
-            tasks.into_iter().enumerate().for_each(sort);
-        } else {
-            tasks.into_par_iter().enumerate().for_each(sort);
-        }
+        let tasks: Vec<Slab<'_>> = (0..dealer.slabs).map(of_slab).collect();
+        tasks.into_par_iter().enumerate().for_each(|(slab, task)| {
+            let in_cells = dealt.iter().flat_map(|block| block.of_slab(slab).iter().map(|e| e.cell));
+            task.sort(in_cells, dealt.iter().flat_map(|block| block.of_slab(slab).iter().copied()));
+        });
     }
 
     /// Pairs whose first body is one of the sorted `first..last`: the rest of its cell and the cell after it, and the three

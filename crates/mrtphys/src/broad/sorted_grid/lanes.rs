@@ -99,7 +99,7 @@ const BATCH: usize = 64;
 fn scan_over<L: Lanes>(grid: &Grid<'_>, first: usize, last: usize, near: &mut Vec<[u32; 2]>) -> u64 {
     let &Grid { start, stride, cells, points, limit } = grid;
     let limit = L::spread(limit);
-    let mut tests = 0;
+    let mut tests = 0_usize;
     let mut marked = [(0_u32, 0_u64); BATCH];
     for batch in (first..last).step_by(BATCH) {
         let end = (batch + BATCH).min(last);
@@ -110,10 +110,10 @@ fn scan_over<L: Lanes>(grid: &Grid<'_>, first: usize, last: usize, near: &mut Ve
             let runs = runs(start, stride, i, own.0[k] as usize);
             let center = [L::spread(own.1[k]), L::spread(own.2[k]), L::spread(own.3[k])];
             let lengths = runs.map(|(from, to)| to - from);
-            tests += u64::from(lengths.iter().sum::<u32>());
+            tests += lengths.iter().sum::<u32>() as usize;
             // Up to 8, a length plus 7 is below 16.
             if lengths.iter().fold(0, |all, length| all | (length + LANES as u32 - 1)) >= 2 * LANES as u32 {
-                long_runs::<L>(points, i, center, limit, &runs, near);
+                long_runs::<L>(grid, i, near);
                 continue;
             }
             let mut marks = 0;
@@ -133,23 +133,18 @@ fn scan_over<L: Lanes>(grid: &Grid<'_>, first: usize, last: usize, near: &mut Ve
             }
         }
     }
-    tests
+    tests as u64
 }
 
 /// Where a run is longer than there are lanes.
 #[inline(never)]
 #[cold]
-fn long_runs<L: Lanes>(
-    points: &Points,
-    i: usize,
-    center: [L::Spread; 3],
-    limit: L::Spread,
-    runs: &[(u32, u32); 5],
-    near: &mut Vec<[u32; 2]>,
-) {
-    for &(from, to) in runs {
+fn long_runs<L: Lanes>(grid: &Grid<'_>, i: usize, near: &mut Vec<[u32; 2]>) {
+    let points = grid.points;
+    let center = [&points.x, &points.y, &points.z].map(|axis| L::spread(axis[i]));
+    for (from, to) in runs(grid.start, grid.stride, i, grid.cells[i] as usize) {
         for place in (from..to).step_by(LANES) {
-            let bits = L::near(center, limit, points, place);
+            let bits = L::near(center, L::spread(grid.limit), points, place);
             for k in (0..LANES as u32).filter(|k| bits >> k & 1 == 1 && place + k < to) {
                 near.push([i as u32, place + k]);
             }

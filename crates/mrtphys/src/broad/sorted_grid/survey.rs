@@ -43,6 +43,7 @@ impl Seen {
         let balls = &view.balls[first..last];
         // Four numbers a ball, side by side: what processors compare at once.
         let (mut low, mut high) = ([Real::INFINITY; 4], [Real::NEG_INFINITY; 4]);
+        let near = &mut self.near;
         for (k, ball) in balls.iter().enumerate() {
             let four = [ball.center.x, ball.center.y, ball.center.z, ball.radius];
             for axis in 0..4 {
@@ -50,7 +51,7 @@ impl Seen {
                 high[axis] = max(high[axis], four[axis]);
             }
             if !clear.holds(ball) {
-                self.near.push((first + k) as u32);
+                near.push((first + k) as u32);
             }
         }
         self.extent = if low[3] >= 0.0 { Extent::between(low, high, balls.len()) } else { Extent::of(balls) };
@@ -102,13 +103,9 @@ impl Clear {
         // The same differences as `reaches_behind` makes, and at least its allowance for rounding: inside of the box no
         // coordinate is larger than `size`.
         let r: Real = ball.radius * (1.0 + 64.0 * Real::EPSILON) + self.allowance;
-        let (c, clear) = (ball.center, &self.bounds);
-        (c.x - clear.min.x > r)
-            & (clear.max.x - c.x > r)
-            & (c.y - clear.min.y > r)
-            & (clear.max.y - c.y > r)
-            & (c.z - clear.min.z > r)
-            & (clear.max.z - c.z > r)
+        let (to_min, to_max) = (ball.center - self.bounds.min, self.bounds.max - ball.center);
+        let nearest = |a: Vec3| min(min(a.x, a.y), a.z);
+        min(nearest(to_min), nearest(to_max)) > r
     }
 }
 
