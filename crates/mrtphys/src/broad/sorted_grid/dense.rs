@@ -21,8 +21,16 @@ pub(super) struct Parts {
     pub slab: usize,
 }
 
-/// What fits into the cache of a core together with its cells.
-pub(super) const PARTS: Parts = Parts { block: 4096, slab: 4096 };
+impl Parts {
+    /// Parts of so many bodies: small enough for the cache of a core together with their cells, and enough of them for some
+    /// threads; but few bodies make a single slab, which is sorted without being dealt out.
+    pub fn of(count: usize) -> Parts {
+        const LARGEST: usize = 4096;
+        let few = count < 2 * LARGEST;
+        let size = if few { 2 * LARGEST } else { (count / 32).clamp(LARGEST / 4, LARGEST) };
+        Parts { block: size, slab: size }
+    }
+}
 
 /// Bodies sorted by cell, x running fastest.
 #[derive(Clone, Debug, Default)]
@@ -318,3 +326,6 @@ impl Dense {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -18,7 +18,7 @@ use crate::bounds::{Aabb, Ball};
 use crate::math::{Real, Vec3, max, min};
 use crate::par;
 use cells::Frame;
-use dense::Dense;
+use dense::{Dense, Parts};
 use sparse::Sparse;
 use survey::Seen;
 
@@ -29,7 +29,7 @@ const DENSE_CELLS_PER_BODY: usize = 16;
 /// Cells that are always affordable.
 const DENSE_CELLS_MIN: usize = 4096;
 /// Sorted bodies in a block of the pair scan.
-const SCAN_BLOCK: usize = 2048;
+const SCAN_BLOCK: usize = 1024;
 
 /// Counting-sorted cells, see the module's text.
 #[derive(Clone, Debug, Default)]
@@ -193,7 +193,7 @@ impl Index {
                 *self = Index::default();
             }
             if let Index::Dense(d) = self {
-                d.rebuild(frame, members, balls, dense::PARTS);
+                d.rebuild(frame, members, balls, Parts::of(extent.count));
             }
         } else {
             if !matches!(self, Index::Sparse(_)) {

@@ -7,9 +7,6 @@ use crate::bounds::{Aabb, Ball, BoundaryBounds};
 use crate::math::{Real, Vec3, max, min};
 use crate::par;
 
-/// Bodies in a block.
-const BLOCK: usize = 4096;
-
 /// What was seen of a block of bodies.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Seen {
@@ -24,8 +21,9 @@ pub(super) struct Seen {
 /// the extent of all bodies that are not empty; `None`: there is none.
 pub(super) fn survey(view: &BoundsView<'_>, seen: &mut Vec<Seen>, out: &mut Candidates) -> Option<Extent> {
     let clear = Clear::of(view.boundaries);
-    let blocks =
-        par::ranges_into(view.balls.len(), BLOCK, seen, |range, seen| seen.look(&clear, range.start, range.end, view));
+    let blocks = par::ranges_into(view.balls.len(), par::stream_block(view.balls.len()), seen, |range, seen| {
+        seen.look(&clear, range.start, range.end, view)
+    });
     let mut extent = Extent::default();
     for block in &seen[..blocks] {
         extent.join(&block.extent);
