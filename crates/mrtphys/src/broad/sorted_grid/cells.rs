@@ -77,9 +77,10 @@ impl Frame {
 
     /// Square of the distance beyond which rounded centres belong to bodies that do not meet, in edges of a cell.
     ///
-    /// A coordinate is below `most` edges, so rounding moves it by 2^-25 `most` at most, a difference of two by 2^-24 `most`
-    /// and the distance by sqrt(3) 2^-24 `most`: the sum of two radii is drawn out by 2^-21 `most`. What the operations of the
-    /// test round is 8 parts in 2^24: the sum is drawn out by 16 more.
+    /// No two radii are more than twice the largest, 2/[`EDGE`] edges. A coordinate is below `most` edges, so rounding moves it by
+    /// 2^-24 `most` at most, a difference of two by 2^-23 `most` and the distance by sqrt(3) 2^-23 `most`: the sum of the radii
+    /// is drawn out by 2^-21 `most`. What the operations of the test round is 8 parts in 2^24 of the square: the sum is drawn
+    /// out by 16 parts more.
     pub fn limit(&self) -> f32 {
         let most = self.count.into_iter().fold(1, i64::max);
         let sum = 2.0 / EDGE * (1.0 + ROUNDED_TEST) + most as Real * ROUNDED_CENTER;
