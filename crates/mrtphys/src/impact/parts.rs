@@ -90,7 +90,6 @@ impl Parts {
     }
 
     /// In parts of `size` bodies. What `smooth` makes tells the contacts that are a bounce.
-
     fn answer_in<F: FnMut(&Contact) -> bool>(
         &mut self,
         size: usize,
@@ -260,10 +259,10 @@ mod tests {
             for threads in [1, 2, 3, 8] {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                 let (mut own, mut counters) = (lines(&velocities), Counters::default());
-                let smooth = || |c: &Contact| c.key % rough != 0;
+                let smooth = || |c: &Contact| !c.key.is_multiple_of(rough);
                 let left = pool.install(|| parts.answer_in(size, smooth, &mut own, &contacts, &mut counters).to_vec());
                 prop_assert!(left.is_sorted());
-                prop_assert!(contacts.iter().all(|c| c.key % rough != 0 || left.contains(&(c.key as u32))));
+                prop_assert!(contacts.iter().all(|c| !c.key.is_multiple_of(rough) || left.contains(&(c.key as u32))));
                 left.iter().for_each(|&k| answer_one(&mut own, &contacts[k as usize], &mut counters));
                 prop_assert_eq!(&own, &twin);
                 prop_assert_eq!(counters, counted);
