@@ -229,7 +229,8 @@ fn lines_and_outlines_keep_their_width_when_pixels_are_saved() {
                 ink(&r.render(&frame, size, size).unwrap(), &plain, color)
             };
             let pen = Pen::new(&camera(), &bounds, Theme::Light, size).reduced(size, part);
-            let boxes = seen(Mode::Phong, &|frame| drop(pen.boxes(&mut frame.overlay, &[bounds])), pen.inks.aabb);
+            let boxes =
+                seen(Mode::Phong, &|frame| assert!(!pen.boxes(&mut frame.overlay, &[bounds]).is_part()), pen.inks.aabb);
             let ball = |frame: &Frame| frame.instance(Vec3::ZERO, 0.5, Quat::IDENTITY, BLUE).unwrap();
             let colors = Theme::Light.colors();
             let outline = seen(

@@ -1,7 +1,7 @@
 //! Where every joule went. Each stage books the change of energy that it measured itself, so that
 //! `energy now = energy at the start + sum of the entries` is a check of the whole simulator, not an identity.
 
-use crate::math::Real;
+use crate::math::{Real, Vec3};
 
 /// Energies of a world \[J\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -12,6 +12,17 @@ pub struct Energy {
     pub rotational: Real,
     /// potential energy in the conservative force fields
     pub potential: Real,
+}
+
+/// What a closed system keeps, of all bodies together: [`World::sums`](crate::World::sums).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sums {
+    /// energies \[J\]
+    pub energy: Energy,
+    /// momentum \[Ns\], equation (11)
+    pub momentum: Vec3,
+    /// angular momentum about the origin \[Js\], equation (20) and the spins
+    pub angular_momentum: Vec3,
 }
 
 impl Energy {

@@ -215,3 +215,29 @@ fn energies_momenta_and_densities_can_be_read_and_set() {
     assert!((w.body(id).unwrap().density() - 1.0).abs() < 1e-15);
     assert_eq!(w.body(id).unwrap().velocity, body.velocity);
 }
+
+#[test]
+fn sums_taken_at_once_are_those_taken_one_by_one() {
+    let mut w = world();
+    w.add_force(Arc::new(mrtphys::field::PointField::new(Vec3::Y, 3.0, 2).unwrap()), Default::default()).unwrap();
+    let ids: Vec<BodyId> = (0..40)
+        .map(|i| {
+            let x = f64::from(i);
+            let (position, velocity) = (Vec3::new(3.0 * x, 0.1 * x, 1.0 / (x + 0.3)), Vec3::new(x, -0.7 * x, 0.1));
+            let fixed = if i % 9 == 8 { Mass::Infinite } else { Mass::Density(300.0 + x) };
+            let def = BodyDef { position, velocity, angular_velocity: Vec3::splat(0.3 * x), mass: fixed, ..ball(0.4) };
+            w.add_body(def).unwrap()
+        })
+        .collect();
+    // Storage in another order than that of creation.
+    [3, 17, 0].into_iter().for_each(|i: usize| w.remove_body(ids[i]).unwrap());
+    w.sort_storage();
+    for _ in 0..5 {
+        w.step().unwrap();
+        let sums = w.sums();
+        let one_by_one = (w.energy(), w.momentum(), w.angular_momentum());
+        // With every digit, and the sign of zero.
+        assert_eq!(format!("{:?}", (sums.energy, sums.momentum, sums.angular_momentum)), format!("{one_by_one:?}"));
+        assert!(sums.energy.potential != 0.0 && sums.momentum.x > 0.0 && sums.angular_momentum.length() > 0.0);
+    }
+}

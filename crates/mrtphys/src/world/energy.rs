@@ -2,7 +2,7 @@
 
 use super::World;
 use crate::field::sum::{potential_energy, potential_round};
-use crate::ledger::{Energy, Ledger};
+use crate::ledger::{Energy, Ledger, Sums};
 use crate::math::{Real, Vec3};
 
 impl World {
@@ -16,6 +16,22 @@ impl World {
         }
         energy.potential = self.potential();
         energy
+    }
+
+    /// Energies, momentum and angular momentum at once: bit for bit what [`World::energy`], [`World::momentum`] and
+    /// [`World::angular_momentum`] return, each summed in order of creation, with that order found once.
+    pub fn sums(&self) -> Sums {
+        let mut sums = Sums::default();
+        for slot in self.model.order() {
+            let slot = slot as usize;
+            let (linear, rotational) = self.kinetic_of(slot);
+            sums.energy.linear += linear;
+            sums.energy.rotational += rotational;
+            sums.momentum += self.momentum_of(slot);
+            sums.angular_momentum += self.angular_momentum_of(slot);
+        }
+        sums.energy.potential = self.potential();
+        sums
     }
 
     /// Potential energy \[J\]. Bodies may have come since the fields' scopes were last turned into slots.
@@ -43,8 +59,11 @@ impl World {
 
     /// Angular momentum of all bodies about the origin \[Js\], equation (20) and the spins.
     pub fn angular_momentum(&self) -> Vec3 {
-        let of = |slot: usize| self.state.lines[slot].x.cross(self.momentum_of(slot)) + self.state.spins[slot].l;
-        self.model.order().into_iter().map(|slot| of(slot as usize)).sum()
+        self.model.order().into_iter().map(|slot| self.angular_momentum_of(slot as usize)).sum()
+    }
+
+    fn angular_momentum_of(&self, slot: usize) -> Vec3 {
+        self.state.lines[slot].x.cross(self.momentum_of(slot)) + self.state.spins[slot].l
     }
 
     fn momentum_of(&self, slot: usize) -> Vec3 {

@@ -152,14 +152,15 @@ impl Lane {
 
     fn sample(&self) -> Sample {
         let world = self.machine.world();
+        let sums = world.sums();
         let (now, then) = (world.totals().to_array(), self.seen.totals.to_array());
         Sample {
             tick: self.machine.position().tick,
             time: world.time(),
-            energy: world.energy(),
+            energy: sums.energy,
             ledger: *world.ledger(),
-            momentum: world.momentum(),
-            angular_momentum: world.angular_momentum(),
+            momentum: sums.momentum,
+            angular_momentum: sums.angular_momentum,
             initial_energy: world.initial_energy(),
             frames: self.seen.frames,
             counts: Counters::from_array(std::array::from_fn(|i| now[i].wrapping_sub(then[i]))),
