@@ -54,14 +54,34 @@ fn failed(log: &mut Log, kind: EngineKind, margin: Margin, why: &str) -> Result<
     log.put(json!({ "what": "failed", "scene": scene, "engine": kind.name(), "margin": name(margin), "why": why }))
 }
 
+/// Whoever can be given a command and answers.
+trait Plays {
+    /// Engine and margin.
+    fn id(&self) -> (EngineKind, Margin);
+
+    /// Gives a command and waits for the answer.
+    ///
+    /// # Errors
+    /// Why there is none.
+    fn ask(&mut self, command: &str, patience: Duration) -> Result<Value, String>;
+
+    /// Writes down a record of it.
+    fn put(&self, log: &mut Log, mut record: Value) -> Result<(), String> {
+        let (kind, margin) = self.id();
+        (record["engine"], record["margin"]) = (kind.name().into(), name(margin).into());
+        record["scene"] = log.scene.as_str().into();
+        log.put(record)
+    }
+}
+
 /// The engines that still play.
-struct Stage<'a> {
-    players: Vec<Player>,
+struct Stage<'a, P: Plays> {
+    players: Vec<P>,
     log: &'a mut Log,
     patience: Duration,
 }
 
-impl Stage<'_> {
+impl<P: Plays> Stage<'_, P> {
     fn play(&mut self, scene: &Scene) -> Result<(), String> {
         let plan = scene.plan;
         let window = plan.burst * plan.rounds;
@@ -124,7 +144,10 @@ impl Stage<'_> {
                     }
                     self.players.push(player);
                 }
-                Err(why) => failed(self.log, player.kind, player.margin, &why)?,
+                Err(why) => {
+                    let (kind, margin) = player.id();
+                    failed(self.log, kind, margin, &why)?;
+                }
             }
         }
         Ok(())
@@ -182,12 +205,6 @@ impl Player {
         Ok(player)
     }
 
-    fn ask(&mut self, command: &str, patience: Duration) -> Result<Value, String> {
-        // Whoever no longer reads has ended, and the answer says why.
-        let _ = writeln!(self.commands, "{command}").and_then(|()| self.commands.flush());
-        self.answer(patience)
-    }
-
     fn answer(&mut self, patience: Duration) -> Result<Value, String> {
         match self.answers.recv_timeout(patience) {
             Ok(line) => {
@@ -211,11 +228,17 @@ impl Player {
         let complaints = self.complaints.lock().map(|lines| lines.iter().cloned().collect::<Vec<_>>().join(" | "));
         format!("{status}: {}", complaints.unwrap_or_default())
     }
+}
 
-    fn put(&self, log: &mut Log, mut record: Value) -> Result<(), String> {
-        (record["engine"], record["margin"]) = (self.kind.name().into(), name(self.margin).into());
-        record["scene"] = log.scene.as_str().into();
-        log.put(record)
+impl Plays for Player {
+    fn id(&self) -> (EngineKind, Margin) {
+        (self.kind, self.margin)
+    }
+
+    fn ask(&mut self, command: &str, patience: Duration) -> Result<Value, String> {
+        // Whoever no longer reads has ended, and the answer says why.
+        let _ = writeln!(self.commands, "{command}").and_then(|()| self.commands.flush());
+        self.answer(patience)
     }
 }
 
@@ -252,5 +275,74 @@ impl SceneFile {
 impl Drop for SceneFile {
     fn drop(&mut self) {
         let _ = std::fs::remove_file(&self.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compare::scenes::catalogue;
+    use std::cell::RefCell;
+    use std::rc::Rc;
+
+    /// A player that writes down what it is told, and fails at a command if it is told to.
+    struct Toy {
+        kind: EngineKind,
+        fails_at: Option<&'static str>,
+        told: Rc<RefCell<Vec<String>>>,
+    }
+
+    impl Plays for Toy {
+        fn id(&self) -> (EngineKind, Margin) {
+            (self.kind, Margin::Default)
+        }
+
+        fn ask(&mut self, command: &str, _: Duration) -> Result<Value, String> {
+            self.told.borrow_mut().push(format!("{} {command}", self.kind.name()));
+            if self.fails_at.is_some_and(|word| command.starts_with(word)) {
+                return Err("it fell over".into());
+            }
+            Ok(json!({"steps": 4, "body_steps": 40, "changes": 10, "moved": 15, "speed": 4.0}))
+        }
+    }
+
+    fn play(fails_at: Option<&'static str>) -> (Vec<String>, Vec<Value>) {
+        let path = std::env::temp_dir().join(format!("mrtphys-stage-{}-{fails_at:?}", std::process::id()));
+        let file = std::fs::File::create(&path).unwrap();
+        let mut log = Log { file, records: Vec::new(), scene: "s".into() };
+        let told = Rc::new(RefCell::new(Vec::new()));
+        let toy = |kind, fails_at| Toy { kind, fails_at, told: told.clone() };
+        let players = vec![toy(EngineKind::Ours, None), toy(EngineKind::Jolt, fails_at)];
+        let mut stage = Stage { players, log: &mut log, patience: Duration::ZERO };
+        stage.play(&catalogue().remove(0).quick()).unwrap();
+        let written = std::fs::read_to_string(&path).unwrap();
+        let _ = std::fs::remove_file(&path);
+        assert_eq!(written.lines().count(), log.records.len());
+        (told.take(), log.records)
+    }
+
+    #[test]
+    fn engines_take_turns_and_each_round_begins_with_another() {
+        let (told, records) = play(None);
+        let times: Vec<_> = told.iter().filter_map(|t| t.strip_suffix(" time 4")).collect();
+        assert_eq!(times, ["ours", "jolt", "jolt", "ours", "ours", "jolt", "jolt", "ours"]);
+        let steps = |t: &String| t.strip_prefix("jolt")?.split(' ').nth(2)?.parse::<u64>().ok();
+        assert_eq!(told.iter().filter_map(steps).sum::<u64>(), 24, "{told:?}");
+        let watch = records.iter().find(|r| r["what"] == "watch").unwrap();
+        assert_eq!(watch["moved"], 0.5);
+        assert_eq!(watch["rate"], 0.25 * 512.0);
+    }
+
+    #[test]
+    fn one_that_fails_leaves_the_stage_and_the_others_go_on() {
+        for command in ["time", "watch", "run", "truth"] {
+            let (told, records) = play(Some(command));
+            let failures: Vec<_> = records.iter().filter(|r| r["what"] == "failed").collect();
+            assert_eq!(failures.len(), 1);
+            assert_eq!((&failures[0]["engine"], &failures[0]["why"]), (&"jolt".into(), &"failed: it fell over".into()));
+            assert_eq!(told.iter().filter(|t| t.starts_with("jolt") && t.contains(command)).count(), 1);
+            assert_eq!(told.last().unwrap(), if command == "truth" { "jolt truth" } else { "ours truth" });
+            assert!(records.iter().any(|r| r["what"] == "truth" && r["engine"] == "ours"));
+        }
     }
 }

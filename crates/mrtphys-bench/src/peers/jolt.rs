@@ -2,7 +2,8 @@
 //!
 //! The C interface of `joltc-sys` does not reach Jolt's `PhysicsSettings`: neither the distance of speculative contacts
 //! (0.02) nor the smallest velocity that rebounds (1) can be set. Jolt knows no other lengths than these and a few like them,
-//! so a scene that is twenty times as large is a scene with a twentieth of the margin: this is how the thin margin is had.
+//! so a scene that is twenty times as large is a scene with a twentieth of the margin: this is how the thin margin is had. Nor
+//! can gravity be set: it is 9.81 downwards along y, times a factor that every body has.
 
 use super::scene::{NeutralBody, NeutralShape, SceneData};
 use super::{Engine, Margin, Scale, Setup, State};
@@ -13,6 +14,9 @@ use std::ptr::{null, null_mut};
 /// Layer of what never moves, and of the rest; the broad phase has the same two.
 const FIXED: u16 = 0;
 const MOVING: u16 = 1;
+
+/// Gravity along y that Jolt applies to a body of factor 1.
+const GRAVITY: f32 = -9.81;
 
 /// Bytes of temporary memory: a contact constraint has about 900.
 const BYTES_PER_CONSTRAINT: usize = 1_100;
@@ -40,8 +44,8 @@ struct Jolt {
 pub(super) fn create(scene: &SceneData, setup: Setup) -> Result<Box<dyn Engine>, String> {
     let larger = if setup.margin == Margin::Thin { 20.0 } else { 1.0 };
     let scale = Scale(Scale::of(scene).0 * larger);
-    if scene.gravity != [0.0; 3] {
-        return Err("gravity: the C interface of joltc-sys 0.3 cannot set it".into());
+    if scene.gravity[0] != 0.0 || scene.gravity[2] != 0.0 {
+        return Err("gravity along x or z: the C interface of joltc-sys 0.3 cannot turn Jolt's".into());
     }
     let settings = format!(
         "scene enlarged {larger} times, so that the fixed speculative distance is {} and the smallest rebound {} in units of \
@@ -131,6 +135,7 @@ impl Jolt {
             MaxLinearVelocity: 1e6,
             MaxAngularVelocity: 1e6,
             AllowSleeping: false,
+            GravityFactor: self.scale.length(scene.gravity[1]) / GRAVITY,
             ..Default::default()
         };
         for (centre, half) in scene.walls() {

@@ -25,9 +25,9 @@ pub(super) fn create(scene: &SceneData, setup: Setup) -> Result<Box<dyn Engine>,
     parameters.dt = scene.dt as f32;
     parameters.normalized_max_linear_velocity = f32::MAX;
     if setup.margin == Margin::Thin {
-        parameters.normalized_prediction_distance /= 20.0;
+        parameters.normalized_prediction_distance = 0.001;
     }
-    let prediction = parameters.prediction_distance();
+    let prediction = if setup.margin == Margin::Thin { "0.001" } else { "0.02" };
     let surface = |c: ColliderBuilder| c.friction(scene.friction as f32).restitution(scene.restitution as f32);
     for (centre, half) in scene.walls() {
         let [x, y, z] = scale.vector(half);
