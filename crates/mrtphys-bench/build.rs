@@ -7,7 +7,7 @@ use std::process::Command;
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    for variable in ["CXX", "CC", "LIBCLANG_PATH", "PATH"] {
+    for variable in ["CFLAGS", "CXX", "CC", "LIBCLANG_PATH", "PATH"] {
         println!("cargo::rerun-if-env-changed={variable}");
     }
     let rustc = env::var("RUSTC").unwrap_or("rustc".into());
@@ -16,6 +16,12 @@ fn main() {
     println!("cargo::rustc-env=MRTPHYS_BENCH_RUSTC={}", version.unwrap_or_default().trim());
 
     let wants = |feature: &str| env::var_os(format!("CARGO_FEATURE_{feature}")).is_some();
+    // boxddd-sys says nothing of NDEBUG to the compiler, so that Box3D's assertions depend on the flags around it.
+    let released = env::var("CFLAGS").is_ok_and(|flags| flags.contains("-DNDEBUG"));
+    println!(
+        "cargo::rustc-env=MRTPHYS_BENCH_BOX3D={}",
+        if released { "" } else { ", WITH ASSERTIONS (CFLAGS lack -DNDEBUG)" }
+    );
     let mut missing = Vec::new();
     if wants("BOX3D") && !runs(&env::var("CC").unwrap_or("cc".into())) {
         missing.push("feature box3d: a C compiler (Debian: apt install gcc)");

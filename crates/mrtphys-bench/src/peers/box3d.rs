@@ -48,7 +48,9 @@ pub(super) fn create(scene: &SceneData, setup: Setup) -> Result<Box<dyn Engine>,
     // SAFETY: a definition that began as the default one; it is only read.
     let world = unsafe { ffi::b3CreateWorld(&def) };
     let settings = format!(
-        "{SUBSTEPS} substeps, length unit {unit}, restitution threshold 0, speed cap 1e6, fast rotation allowed, no sleep, {workers} worker(s)"
+        "{SUBSTEPS} substeps, length unit {unit}, restitution threshold 0, speed cap 1e6, fast rotation allowed, no sleep, \
+         {workers} worker(s){}",
+        env!("MRTPHYS_BENCH_BOX3D")
     );
     let mut engine = Box3d { world, bodies: Vec::new(), scale, dt: scene.dt as f32, settings };
     engine.fill(scene)?;

@@ -71,6 +71,10 @@ impl Physx {
             desc.cpuDispatcher = dispatcher.cast();
             desc.filterShader = get_default_simulation_filter_shader();
             desc.bounceThresholdVelocity = 1e-4;
+            // The default, PABP, is the same made for several threads.
+            if threads == 1 {
+                desc.broadPhaseType = PxBroadPhaseType::Abp;
+            }
             let made = PxPhysics_createScene_mut(physics, &desc);
             let (friction, restitution) = (scene.friction as f32, scene.restitution as f32);
             let material = PxPhysics_createMaterial_mut(physics, friction, friction, restitution);
@@ -190,7 +194,9 @@ impl Engine for Physx {
 
     fn settings(&self) -> String {
         let offset = self.offset.unwrap_or(0.02);
-        format!("contact offset {offset}, bounce threshold 1e-4, speed caps 1e6, no damping, no sleep, PGS, PCM")
+        format!(
+            "contact offset {offset}, bounce threshold 1e-4, speed caps 1e6, no damping, no sleep, PGS, PCM, ABP with one thread"
+        )
     }
 
     fn step(&mut self) -> Result<(), String> {
