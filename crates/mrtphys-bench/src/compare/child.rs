@@ -7,6 +7,9 @@ use serde_json::{Value, json};
 use std::io::{BufRead, Write};
 use std::path::Path;
 
+/// Stack of a thread in bytes: Jolt goes deep among a million bodies. What is not used is not taken.
+const STACK: usize = 1 << 28;
+
 /// Serves until there are no more commands.
 ///
 /// # Errors
@@ -17,7 +20,8 @@ pub fn serve(args: &[String]) -> Result<(), String> {
     let margin = if margin == name(Margin::Thin) { Margin::Thin } else { Margin::Default };
     let threads: usize = threads.parse().map_err(|_| "no number of threads")?;
     // The engine is made and run within a pool of that many threads: engines that use one take it from there.
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|e| e.to_string())?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK);
+    let pool = pool.build().map_err(|e| e.to_string())?;
     let result = pool.install(|| answer_all(kind, Setup { margin, threads }, Path::new(path)));
     if let Err(why) = &result {
         answer(&json!({ "error": why }))?;
