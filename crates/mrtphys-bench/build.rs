@@ -45,7 +45,7 @@ fn main() {
         }
     }
     for what in &missing {
-        println!("cargo:::error=mrtphys-bench needs, for its {what}");
+        println!("cargo::error=mrtphys-bench needs, for its {what}");
     }
     if !missing.is_empty() {
         std::process::exit(1);
