@@ -6,7 +6,7 @@ use crate::choices;
 use crate::exit::{Failure, Outcome, complain};
 use crate::plan::{End, check_seconds};
 use crate::render_args::RenderArgs;
-use crate::{bench, check, experiment, list, output, render, run};
+use crate::{bench, check, experiment, list, output, render, run, testbed};
 use clap::{Args, Parser, Subcommand};
 use mrtphys::{Algorithm, BroadPhaseKind, FrictionLaw, ImpactMode};
 use std::ffi::OsString;
@@ -26,8 +26,9 @@ struct Cli {
 
 #[derive(Subcommand, Debug)]
 enum Command {
-    /// The testbed on one scene (not in this version)
-    View(Later),
+    /// The testbed on one scene
+    #[command(allow_negative_numbers = true)]
+    View(Box<ViewArgs>),
     /// Simulate without a window: progress on stderr, summary on stdout
     #[command(allow_negative_numbers = true)]
     Run(Box<RunArgs>),
@@ -95,8 +96,30 @@ pub struct RunArgs {
     pub snapshot: Option<PathBuf>,
 }
 
+/// Options of `view`.
+#[derive(Args, Clone, Debug, Default)]
+#[cfg_attr(not(feature = "testbed"), allow(dead_code))]
+pub struct ViewArgs {
+    /// A scene file, or the name of a gallery scene; without it, the gallery
+    pub scene: Option<OsString>,
+    #[command(flatten)]
+    pub simulation: SimulationArgs,
+    /// Frames per second of simulated time
+    #[arg(long, value_name = "N", value_parser = rate)]
+    pub fps: Option<u32>,
+    /// Stand still at the first frame
+    #[arg(long)]
+    pub paused: bool,
+    /// Width and height of the window at first [points]
+    #[arg(long, value_name = "WxH", value_parser = crate::render_args::size)]
+    pub size: Option<(u32, u32)>,
+    /// For tests: write what the panel says, and where its controls are, whenever it changes
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub status: Option<PathBuf>,
+}
+
 /// How a scene is simulated: options of every command that does.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug, Default)]
 pub struct SimulationArgs {
     /// Time-stepping algorithm: fixed-step
     #[arg(long, value_name = "NAME", value_parser = choices::algorithm)]
@@ -160,7 +183,7 @@ fn whole(text: &str, low: u64, high: u64) -> Result<u64, String> {
 }
 
 /// Version, precision and the instruction set that this machine has.
-fn version() -> String {
+pub fn version() -> String {
     format!("{} (f64, {})", env!("CARGO_PKG_VERSION"), instruction_set())
 }
 
@@ -194,10 +217,9 @@ pub fn main() -> ExitCode {
 }
 
 fn dispatch(cli: Cli) -> Outcome {
-    let instead = "use 'mrtphys run SCENE' to simulate without a window, 'mrtphys scenes' for the gallery";
     match cli.command {
-        None => Err(Failure::not_yet("the interactive testbed", instead)),
-        Some(Command::View(_)) => Err(Failure::not_yet("'view'", instead)),
+        None => testbed::open(&ViewArgs::default()),
+        Some(Command::View(args)) => testbed::open(&args),
         Some(Command::Render(args)) => render::render(&args, cli.quiet),
         Some(Command::Experiment(later)) => experiment::experiment(&later.args, cli.quiet),
         Some(Command::Validate(_)) => {

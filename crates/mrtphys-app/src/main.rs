@@ -26,6 +26,12 @@ mod render;
 #[path = "render_none.rs"]
 mod render;
 
+#[cfg(feature = "testbed")]
+mod testbed;
+#[cfg(not(feature = "testbed"))]
+#[path = "testbed_none.rs"]
+mod testbed;
+
 mod check;
 mod list;
 mod bench;

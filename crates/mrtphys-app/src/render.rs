@@ -20,16 +20,20 @@ const AT_A_STEP: f64 = 1e-6;
 
 /// Where the pictures go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+pub enum Kind {
+    /// one picture
     Png,
+    /// a film of few colors
     Gif,
+    /// a film
     Mp4,
+    /// a folder of pictures
     Folder,
 }
 
 impl Kind {
     /// What a path asks for.
-    fn of(path: &Path) -> Outcome<Kind> {
+    pub fn of(path: &Path) -> Outcome<Kind> {
         let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
         match ending.as_deref() {
             _ if path.is_dir() => Ok(Kind::Folder),
@@ -49,7 +53,8 @@ impl Kind {
     }
 }
 
-fn failure(e: ViewError) -> Failure {
+/// How a command ends that cannot draw or write a picture.
+pub fn failure(e: ViewError) -> Failure {
     match e {
         ViewError::Driver(_) | ViewError::Write(_) => Failure::Stopped(e.to_string()),
         _ => Failure::Wrong(e.to_string()),
@@ -95,7 +100,7 @@ fn render_here(args: &RenderArgs, quiet: bool) -> Outcome {
 }
 
 /// Pictures of another film in the folder would be taken for this one's.
-fn check_folder(path: &Path) -> Outcome {
+pub fn check_folder(path: &Path) -> Outcome {
     let Ok(entries) = std::fs::read_dir(path) else { return Ok(()) };
     let is_picture = |name: &str| name.starts_with("frame_") && name.ends_with(".png");
     if entries.flatten().any(|e| is_picture(&e.file_name().to_string_lossy())) {
@@ -119,7 +124,13 @@ fn into_file(args: &RenderArgs, kind: Kind, reel: &mut Reel, world: &mut World) 
     }
 }
 
-fn open<'a>(to: &'a mut dyn Write, kind: Kind, (width, height): (u32, u32), fps: f64) -> Outcome<Box<dyn Film + 'a>> {
+/// A film into a file.
+pub fn open<'a>(
+    to: &'a mut dyn Write,
+    kind: Kind,
+    (width, height): (u32, u32),
+    fps: f64,
+) -> Outcome<Box<dyn Film + 'a>> {
     match kind {
         Kind::Gif => Ok(Box::new(Gif::new(to, width, height, fps).map_err(failure)?)),
         #[cfg(feature = "mp4")]

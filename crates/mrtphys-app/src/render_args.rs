@@ -64,7 +64,8 @@ fn speed(text: &str) -> Result<f64, String> {
     }
 }
 
-fn size(text: &str) -> Result<(u32, u32), String> {
+/// Reads a width and a height.
+pub fn size(text: &str) -> Result<(u32, u32), String> {
     let (w, h) = text.split_once('x').ok_or("WIDTHxHEIGHT is needed, such as 1280x720")?;
     let number = |s: &str| match s.parse::<u32>() {
         Ok(n) if (1..=LARGEST).contains(&n) => Ok(n),

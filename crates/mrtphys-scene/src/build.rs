@@ -19,6 +19,7 @@ use mrtphys::world::World;
 use std::sync::Arc;
 
 /// A world made from a scene, with the names that the world itself does not keep.
+#[derive(Clone)]
 pub struct Loaded {
     /// the world
     pub world: World,

@@ -17,6 +17,8 @@ const DOLLY_OF_A_DRAG: Real = 2.0;
 const AIR: Real = 1.06;
 /// A distance is multiplied or divided by no more than this at once: a wild mouse is no reason to be lost.
 const MOST_AT_ONCE: Real = 20.0;
+/// Nothing nearer to the eye than this part of the distance of the point looked at is drawn.
+const NEAR: Real = 1e-3;
 
 /// A perspective camera. Movements are given as fractions of the picture's height, to the right and downwards, as the mouse
 /// moves.
@@ -47,6 +49,22 @@ pub struct Axes {
     pub up: Vec3,
     /// into the picture
     pub forward: Vec3,
+}
+
+/// A half-line in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// where it begins \[m\]
+    pub origin: Vec3,
+    /// where it goes; of length 1
+    pub direction: Vec3,
+}
+
+impl Ray {
+    /// The point at a distance \[m\] from the origin.
+    pub fn at(&self, distance: Real) -> Vec3 {
+        self.origin + self.direction * distance
+    }
 }
 
 impl Camera {
@@ -137,11 +155,34 @@ impl Camera {
         self.eye = center + toward_eye * distance;
     }
 
+    /// What is seen at a place of the picture, given as fractions of its width and height from the upper left corner: the
+    /// line of sight, from the near plane on. `aspect`: width to height.
+    pub fn ray(&self, x: Real, y: Real, aspect: Real) -> Ray {
+        let Axes { right, up, forward } = self.axes();
+        let tan = self.tan_half_fov();
+        let along = forward + right * (tan * aspect * (2.0 * x - 1.0)) + up * (tan * (1.0 - 2.0 * y));
+        let direction = along.try_normalize().unwrap_or(forward);
+        Ray { origin: self.eye + along * (NEAR * self.distance()), direction }
+    }
+
+    /// Where in the picture a point is: fractions of its width and height from the upper left corner, which lie outside 0
+    /// to 1 where the point is beyond the edge. `None`: it is not before the near plane.
+    pub fn place(&self, point: Vec3, aspect: Real) -> Option<(Real, Real)> {
+        let Axes { right, up, forward } = self.axes();
+        let d = point - self.eye;
+        let depth = d.dot(forward);
+        if !(depth >= NEAR * self.distance()) {
+            return None;
+        }
+        let half = depth * self.tan_half_fov();
+        Some((0.5 + 0.5 * d.dot(right) / (half * aspect), 0.5 - 0.5 * d.dot(up) / half))
+    }
+
     /// World to clip coordinates, in coordinates relative to `origin` and in units of `unit` metres.
     pub(crate) fn projection(&self, origin: Vec3, unit: Real, aspect: Real) -> Matrix {
         let Axes { right, up, forward } = self.axes();
         let view = Matrix::view((self.eye - origin) / unit, right, up, forward);
-        Matrix::perspective(self.tan_half_fov(), aspect, 1e-3 * self.distance() / unit).times(&view)
+        Matrix::perspective(self.tan_half_fov(), aspect, NEAR * self.distance() / unit).times(&view)
     }
 }
 
@@ -255,6 +296,33 @@ mod tests {
             }
             assert!((0.9..=1.0).contains(&largest), "{aspect}: {largest}");
         }
+    }
+
+    #[test]
+    fn a_ray_goes_through_what_is_drawn_at_its_place() {
+        let mut c = camera();
+        c.roll(0.1);
+        for aspect in [0.5, 1.0, 1.8] {
+            for (x, y) in [(0.5, 0.5), (0.0, 0.0), (1.0, 0.2), (0.3, 0.9), (-0.2, 1.3)] {
+                let ray = c.ray(x, y, aspect);
+                assert!((ray.direction.length() - 1.0).abs() < 1e-12);
+                for distance in [0.001, 0.7, 5.0, 1e6] {
+                    let p = ray.at(distance);
+                    let (px, py) = c.place(p, aspect).unwrap();
+                    assert!((px - x).abs() < 1e-9 && (py - y).abs() < 1e-9, "{px} {py} for {x} {y}");
+                    // The same place as the renderer's matrix gives.
+                    let h = c.projection(Vec3::ZERO, 1.0, aspect).apply(p);
+                    let (mx, my) = (0.5 + 0.5 * h[0] / h[3], 0.5 - 0.5 * h[1] / h[3]);
+                    assert!((px - mx).abs() < 1e-9 && (py - my).abs() < 1e-9);
+                }
+            }
+        }
+        assert!(c.ray(0.0, 0.0, 1.0).direction.dot(c.axes().up) > 0.0, "y counts downwards");
+        assert_eq!(c.place(c.eye - c.axes().forward, 1.0), None);
+        assert_eq!(c.place(c.eye, 1.0), None);
+        assert_eq!(c.place(Vec3::splat(Real::NAN), 1.0), None);
+        let (x, y) = c.place(c.look_at, 1.5).unwrap();
+        assert!((x - 0.5).abs() < 1e-12 && (y - 0.5).abs() < 1e-12);
     }
 
     #[test]

@@ -40,6 +40,32 @@ impl Mode {
     }
 }
 
+/// The lighting equation: what light does to a surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Illumination {
+    /// light from everywhere only: no lamp, no shadow
+    Ambient,
+    /// and diffuse reflection of the lamps (Lambert, *Photometria*, 1760)
+    Lambert,
+    /// and highlights where the eye meets the mirrored ray of a lamp (Phong, "Illumination for Computer Generated
+    /// Pictures", CACM 18, 1975)
+    Phong,
+    /// and highlights where the normal is half-way between lamp and eye (Blinn, "Models of Light Reflection for Computer
+    /// Synthesized Pictures", SIGGRAPH 1977)
+    #[default]
+    Blinn,
+}
+
+impl Illumination {
+    /// All equations with their names.
+    pub const ALL: [(Illumination, &'static str); 4] = [
+        (Illumination::Ambient, "ambient"),
+        (Illumination::Lambert, "lambert"),
+        (Illumination::Phong, "phong"),
+        (Illumination::Blinn, "blinn"),
+    ];
+}
+
 /// How finely spheres are triangulated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
@@ -55,6 +81,8 @@ pub enum Quality {
 pub struct Look {
     /// how surfaces are drawn
     pub mode: Mode,
+    /// what light does to a surface
+    pub illumination: Illumination,
     /// how finely spheres are triangulated
     pub quality: Quality,
     /// light or dark
@@ -65,17 +93,21 @@ pub struct Look {
     pub smooth: Option<bool>,
     /// whether boundaries are drawn
     pub walls: bool,
+    /// whether spheres bear marks, by which one sees them spin
+    pub marks: bool,
 }
 
 impl Default for Look {
     fn default() -> Look {
         Look {
             mode: Mode::default(),
+            illumination: Illumination::default(),
             quality: Quality::default(),
             theme: Theme::default(),
             shadows: true,
             smooth: None,
             walls: true,
+            marks: true,
         }
     }
 }
@@ -106,6 +138,8 @@ pub struct Instance {
     pub rotation: [f32; 4],
     /// color in the sRGB encoding, and how opaque
     pub color: [u8; 4],
+    /// whether it bears marks, by which one sees it spin: 1, else 0. Only for spheres
+    pub marks: f32,
 }
 
 /// Bodies of one surface.
@@ -128,6 +162,8 @@ pub struct Wall {
     pub two_sided: bool,
     /// goes on beyond what is drawn: fades out, with a grid of this width \[m\] to show how far
     pub endless: Option<Real>,
+    /// which edges are drawn, from each corner to the next; those of endless faces are not
+    pub edges: [bool; 4],
     /// color; `None`: the theme's
     pub color: Option<Rgb>,
 }
@@ -151,8 +187,19 @@ pub struct Frame {
     pub batches: Vec<Batch>,
     /// boundaries
     pub walls: Vec<Wall>,
+    /// bodies that are outlined
+    pub highlight: Vec<Highlighted>,
     /// what explains it
     pub overlay: Overlay,
+}
+
+/// A body that is outlined, whatever is before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Highlighted {
+    /// which of the frame's batches has its surface; `None`: a sphere
+    pub batch: Option<usize>,
+    /// the body
+    pub body: Instance,
 }
 
 /// Beyond this many units from the point looked at nothing is drawn: single precision would no longer hold it, and it
@@ -172,6 +219,7 @@ impl Frame {
             spheres: Vec::new(),
             batches: Vec::new(),
             walls: Vec::new(),
+            highlight: Vec::new(),
             overlay: Overlay::default(),
         }
     }
@@ -184,6 +232,7 @@ impl Frame {
         self.spheres.clear();
         self.batches.iter_mut().for_each(|b| b.instances.clear());
         self.walls.clear();
+        self.highlight.clear();
     }
 
     /// A body in drawing coordinates; `None` where it cannot be drawn (not finite, or too far away).
@@ -200,6 +249,7 @@ impl Frame {
             scale: scale as f32,
             rotation: [q.x, q.y, q.z, q.w].map(|x| x as f32),
             color,
+            marks: 0.0,
         })
     }
 

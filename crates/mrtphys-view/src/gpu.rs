@@ -64,6 +64,10 @@ impl Gpu {
 }
 
 /// OpenGL is tried last: its libraries complain on stderr where there is no display.
+///
+/// Under Linux Mesa's Vulkan layer `VK_LAYER_MESA_device_select` looks for a Wayland display whenever devices are listed, and
+/// libwayland then writes "XDG_RUNTIME_DIR is invalid or not set" where that variable is missing. It does no harm. Only the
+/// environment keeps the layer away (`NODEVICE_SELECT=1`), and a program cannot safely change its own once threads may run.
 fn adapter() -> Result<wgpu::Adapter, ViewError> {
     let mut why = String::new();
     for backends in [wgpu::Backends::PRIMARY, wgpu::Backends::SECONDARY] {

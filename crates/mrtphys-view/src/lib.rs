@@ -24,7 +24,12 @@ pub mod palette;
 pub mod mesh;
 pub mod overlay;
 pub mod frame;
+pub mod scale;
+pub mod explain;
 mod walls;
+mod dress;
+mod pick;
+mod poses;
 mod stage;
 
 // How it is drawn.
@@ -34,6 +39,7 @@ mod lists;
 mod pipelines;
 mod canvas;
 mod gpu;
+mod outline;
 mod renderer;
 
 // Where it goes.
@@ -41,15 +47,20 @@ pub mod image;
 pub mod film;
 mod error;
 
-pub use camera::Camera;
+pub use camera::{Camera, Ray};
 pub use canvas::Canvas;
+pub use dress::{Coloring, Dress, Legend};
 pub use error::ViewError;
+pub use explain::{Drawn, Pen};
 pub use film::Film;
-
-pub use frame::{Frame, Light, Look, Mode, Quality};
+pub use frame::{Frame, Illumination, Light, Look, Mode, Quality};
 pub use gpu::Gpu;
 pub use image::Image;
+pub use lists::Sorting;
 pub use overlay::Overlay;
 pub use palette::Theme;
+pub use pick::Hit;
+pub use poses::Poses;
 pub use renderer::Renderer;
-pub use stage::{Poses, Stage, frame_of};
+pub use scale::Scale;
+pub use stage::{Stage, frame_of};

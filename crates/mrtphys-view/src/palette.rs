@@ -39,6 +39,36 @@ pub fn varied(rgb: Rgb, number: usize) -> Rgb {
     rgb.map(|c| (f64::from(c) * factor).round().min(255.0) as u8)
 }
 
+/// Samples of the color map "viridis" (van der Walt and Smith, "A Better Default Colormap for Matplotlib", SciPy 2015; CC0) at
+/// even distances. Equal steps look equal, its lightness rises from end to end, and people with any kind of color vision see it
+/// nearly alike.
+const VIRIDIS: [Rgb; 11] = [
+    [0x44, 0x01, 0x54],
+    [0x48, 0x25, 0x76],
+    [0x41, 0x44, 0x87],
+    [0x35, 0x60, 0x8d],
+    [0x2a, 0x78, 0x8e],
+    [0x21, 0x90, 0x8c],
+    [0x22, 0xa8, 0x84],
+    [0x43, 0xbf, 0x71],
+    [0x7a, 0xd1, 0x51],
+    [0xbb, 0xdf, 0x27],
+    [0xfd, 0xe7, 0x25],
+];
+
+/// The color of a number from 0 to 1, by the map "viridis": 0 is dark violet, 1 bright yellow. Numbers outside look as the end
+/// that they are beyond; one that is none as 0.
+pub fn ramp(x: f64) -> Rgb {
+    let at = x.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
+    // A NaN becomes 0.
+    let i = (at as usize).min(VIRIDIS.len() - 2);
+    let part = if at.is_nan() { 0.0 } else { at - i as f64 };
+    std::array::from_fn(|k| {
+        let (a, b) = (f64::from(VIRIDIS[i][k]), f64::from(VIRIDIS[i + 1][k]));
+        (a + (b - a) * part).round() as u8
+    })
+}
+
 /// From the sRGB encoding to light.
 pub fn to_linear(c: u8) -> f32 {
     let c = f32::from(c) / 255.0;
@@ -75,9 +105,20 @@ pub struct Colors {
     pub ink: Rgb,
     /// faces of hidden-line drawings
     pub paper: Rgb,
+    /// outline of what is chosen
+    pub accent: Rgb,
 }
 
 impl Theme {
+    /// The color of a number from 0 to 1 as [`ramp`] gives it, without the end that is close to the background.
+    pub fn ramp(self, x: f64) -> Rgb {
+        let x = x.clamp(0.0, 1.0);
+        match self {
+            Theme::Light => ramp(0.95 * x),
+            Theme::Dark => ramp(0.3 + 0.7 * x),
+        }
+    }
+
     /// Its colors.
     pub fn colors(self) -> Colors {
         match self {
@@ -88,6 +129,7 @@ impl Theme {
                 wall_edge: [0x8d, 0x98, 0xa5],
                 ink: [0x10, 0x16, 0x20],
                 paper: [0xf7, 0xf9, 0xfb],
+                accent: [0xe0, 0x00, 0x5a],
             },
             Theme::Dark => Colors {
                 sky: [0x14, 0x17, 0x1c],
@@ -96,6 +138,7 @@ impl Theme {
                 wall_edge: [0x7a, 0x87, 0x98],
                 ink: [0xff, 0xff, 0xff],
                 paper: [0x1c, 0x20, 0x27],
+                accent: [0xff, 0xd2, 0x3c],
             },
         }
     }
@@ -129,6 +172,21 @@ mod tests {
         assert_eq!((to_linear(0), to_linear(255)), (0.0, 1.0));
         assert!((to_linear(188) - 0.5029).abs() < 1e-3);
         assert!((to_linear(10) - 0.003_035).abs() < 1e-5);
+    }
+
+    /// Lightness L* of CIELAB.
+    fn lightness(rgb: Rgb) -> f32 {
+        let [r, g, b] = linear(rgb);
+        116.0 * (0.2126 * r + 0.7152 * g + 0.0722 * b).cbrt() - 16.0
+    }
+
+    #[test]
+    fn the_ramp_grows_lighter_evenly_from_end_to_end() {
+        let all: Vec<f32> = (0..=100).map(|i| lightness(ramp(f64::from(i) / 100.0))).collect();
+        assert!(all.windows(2).all(|w| (0.2..1.5).contains(&(w[1] - w[0]))), "{all:?}");
+        assert!(all[0] < 18.0 && all[100] > 88.0);
+        assert_eq!((ramp(-3.0), ramp(f64::NAN), ramp(7.0)), (ramp(0.0), ramp(0.0), ramp(1.0)));
+        assert_eq!(ramp(0.5), VIRIDIS[5]);
     }
 
     #[test]

@@ -21,7 +21,7 @@ pub struct EdgeCorner {
 
 const VERTEX: [VertexAttribute; 2] = vertex_attr_array![0 => Float32x3, 1 => Float32x3];
 const EDGE: [VertexAttribute; 3] = vertex_attr_array![0 => Float32x3, 1 => Float32x3, 5 => Uint32];
-const INSTANCE: [VertexAttribute; 3] = vertex_attr_array![2 => Float32x4, 3 => Float32x4, 4 => Unorm8x4];
+const INSTANCE: [VertexAttribute; 4] = vertex_attr_array![2 => Float32x4, 3 => Float32x4, 4 => Unorm8x4, 6 => Float32];
 const STROKE: [VertexAttribute; 3] = vertex_attr_array![0 => Float32x4, 1 => Float32x3, 2 => Unorm8x4];
 const FACE: [VertexAttribute; 5] =
     vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Unorm8x4];
@@ -39,8 +39,11 @@ pub struct Layouts {
     pub picture: wgpu::BindGroupLayout,
     /// the shadow map
     pub shadow: wgpu::BindGroupLayout,
+    /// the mask of what is outlined
+    pub mask: wgpu::BindGroupLayout,
     all: wgpu::PipelineLayout,
-    picture_only: wgpu::PipelineLayout,
+    pub(crate) picture_only: wgpu::PipelineLayout,
+    pub(crate) masked: wgpu::PipelineLayout,
 }
 
 impl Layouts {
@@ -73,14 +76,22 @@ impl Layouts {
         };
         let all = layout(&[Some(&picture), Some(&shadow)]);
         let picture_only = layout(&[Some(&picture)]);
-        Layouts { picture, shadow, all, picture_only }
+        let flat = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let mask = group(&[entry(0, fragment, flat)]);
+        let masked = layout(&[Some(&picture), Some(&mask)]);
+        Layouts { picture, shadow, mask, all, picture_only, masked }
     }
 }
 
 /// The shaders.
 pub struct Shaders {
-    body: ShaderModule,
-    line: ShaderModule,
+    pub(crate) body: ShaderModule,
+    pub(crate) line: ShaderModule,
+    pub(crate) outline: ShaderModule,
     wall: ShaderModule,
     background: ShaderModule,
     depth: ShaderModule,
@@ -103,11 +114,19 @@ impl Shaders {
         Shaders {
             body: shader!(device, "shadow_map.wgsl", "body.wgsl"),
             line: shader!(device, "line.wgsl"),
+            outline: shader!(device, "outline.wgsl"),
             wall: shader!(device, "shadow_map.wgsl", "wall.wgsl"),
             background: shader!(device, "background.wgsl"),
             depth: shader!(device, "depth.wgsl"),
         }
     }
+}
+
+/// The buffers of a surface's triangles, or of its edges, and of its bodies.
+pub fn body_buffers(edges: bool) -> [Option<VertexBufferLayout<'static>>; 2] {
+    use wgpu::VertexStepMode::{Instance as Each, Vertex as Corner};
+    let surface = if edges { buffer::<EdgeCorner>(&EDGE, Corner) } else { buffer::<Vertex>(&VERTEX, Corner) };
+    [surface, buffer::<Instance>(&INSTANCE, Each)]
 }
 
 /// The pipelines for a number of samples a pixel.
@@ -154,9 +173,8 @@ struct Kind<'a> {
 impl Pipelines {
     /// Makes them.
     pub fn new(device: &wgpu::Device, layouts: &Layouts, shaders: &Shaders, samples: u32) -> Pipelines {
-        use wgpu::VertexStepMode::{Instance as Each, Vertex as Corner};
-        let bodies = [buffer::<Vertex>(&VERTEX, Corner), buffer::<Instance>(&INSTANCE, Each)];
-        let edges = [buffer::<EdgeCorner>(&EDGE, Corner), buffer::<Instance>(&INSTANCE, Each)];
+        use wgpu::VertexStepMode::Instance as Each;
+        let (bodies, edges) = (body_buffers(false), body_buffers(true));
         let strokes = [buffer::<Stroke>(&STROKE, Each)];
         let faces = [buffer::<Face>(&FACE, Each)];
         let body = |vertex, fragment| Kind {
@@ -248,8 +266,7 @@ fn pipeline(device: &wgpu::Device, layouts: &Layouts, samples: u32, kind: &Kind<
 
 /// The pipeline of the shadow map: depth only.
 pub fn shadow_pipeline(device: &wgpu::Device, layouts: &Layouts, shaders: &Shaders) -> wgpu::RenderPipeline {
-    use wgpu::VertexStepMode::{Instance as Each, Vertex as Corner};
-    let buffers = [buffer::<Vertex>(&VERTEX, Corner), buffer::<Instance>(&INSTANCE, Each)];
+    let buffers = body_buffers(false);
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("shadow map"),
         layout: Some(&layouts.picture_only),

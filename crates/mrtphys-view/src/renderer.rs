@@ -7,6 +7,7 @@ use crate::gpu::{Gpu, Growing};
 use crate::image::Image;
 use crate::lists::{Detail, Draw, Face, Form, Lists, Stroke};
 use crate::mesh::Mesh;
+use crate::outline::Outliner;
 use crate::pipelines::{EdgeCorner, Layouts, Pipelines, Shaders, shadow_pipeline};
 use crate::uniforms::{Uniforms, edge_width};
 use std::collections::BTreeMap;
@@ -49,6 +50,7 @@ pub struct Renderer {
     instances: Growing,
     strokes: Growing,
     faces: Growing,
+    outliner: Option<Outliner>,
     canvas: Option<Canvas>,
 }
 
@@ -101,6 +103,7 @@ impl Renderer {
             instances: Growing::new("bodies", BufferUsages::VERTEX),
             strokes: Growing::new("lines", BufferUsages::VERTEX),
             faces: Growing::new("walls", BufferUsages::VERTEX),
+            outliner: None,
             canvas: None,
             gpu,
         })
@@ -146,7 +149,7 @@ impl Renderer {
         let (width, height) = canvas.size();
         let tolerance = if self.gpu.is_software { ROUNDNESS.1 } else { ROUNDNESS.0 };
         let uniforms = Uniforms::new(frame, width, height, self.shadow_size);
-        self.lists.collect(frame, Detail { height, tolerance, line_width: edge_width(height) });
+        self.lists.collect(frame, Detail { width, height, tolerance, line_width: edge_width(height) });
         self.gpu.queue.write_buffer(&self.picture, 0, bytemuck::bytes_of(&uniforms));
         self.instances.put(&self.gpu, bytemuck::cast_slice(&self.lists.instances))?;
         self.strokes.put(&self.gpu, bytemuck::cast_slice(&self.lists.strokes))?;
@@ -156,12 +159,27 @@ impl Renderer {
         if !self.pipelines.iter().any(|p| p.samples == canvas.samples()) {
             self.pipelines.push(Pipelines::new(device, &self.layouts, &self.shaders, canvas.samples()));
         }
+        if !self.lists.outlined.is_empty() {
+            let outliner = self.outliner.take().filter(|o| o.fits(width, height));
+            let made = outliner.unwrap_or_else(|| Outliner::new(device, &self.layouts, &self.shaders, width, height));
+            self.outliner = Some(made.prepared(device, &self.layouts, &self.shaders, canvas.samples()));
+        }
+        let device = &self.gpu.device;
         let mut encoder = device.create_command_encoder(&Default::default());
         if uniforms.has_shadows() {
             self.shadow_pass(&mut encoder, frame);
         }
+        let [left, top, right, bottom] = self.lists.outline;
+        let outliner =
+            self.outliner.as_ref().filter(|_| !self.lists.outlined.is_empty() && left < right && top < bottom);
+        if let Some(outliner) = outliner {
+            self.mask_passes(&mut encoder, frame, outliner);
+        }
         if let Some(pipelines) = self.pipelines.iter().find(|p| p.samples == canvas.samples()) {
-            self.main_pass(&mut encoder, frame, canvas, pipelines);
+            let mut pass = self.main_pass(&mut encoder, frame, canvas, pipelines);
+            if let Some(outliner) = outliner {
+                outliner.draw(&mut pass, self.lists.outline, canvas.samples());
+            }
         }
         self.gpu.queue.submit([encoder.finish()]);
         self.gpu.check()
@@ -172,7 +190,8 @@ impl Renderer {
         let device = &self.gpu.device;
         self.surfaces.values_mut().for_each(|s| s.used = false);
         let bubble = Draw { form: Form::Sphere(BUBBLE_LEVEL), range: self.lists.bubbles.clone() };
-        for draw in self.lists.draws.iter().chain((!bubble.range.is_empty()).then_some(&bubble)) {
+        let drawn = self.lists.draws.iter().chain(&self.lists.outlined);
+        for draw in drawn.chain((!bubble.range.is_empty()).then_some(&bubble)) {
             match draw.form {
                 Form::Sphere(level) => {
                     let level = usize::from(level);
@@ -208,7 +227,28 @@ impl Renderer {
         self.draw_bodies(&mut pass, frame, false);
     }
 
-    fn main_pass(&self, encoder: &mut wgpu::CommandEncoder, frame: &Frame, canvas: &Canvas, p: &Pipelines) {
+    /// Masks what is outlined.
+    fn mask_passes(&self, encoder: &mut wgpu::CommandEncoder, frame: &Frame, outliner: &Outliner) {
+        {
+            let mut pass = outliner.mask_pass(encoder);
+            pass.set_bind_group(0, &self.picture_group, &[]);
+            for edges in [false, true] {
+                pass.set_pipeline(outliner.mask_pipeline(edges));
+                for draw in &self.lists.outlined {
+                    self.draw_some(&mut pass, frame, draw.form, &draw.range, edges);
+                }
+            }
+        }
+        outliner.row_pass(encoder, &self.picture_group, self.lists.outline);
+    }
+
+    fn main_pass<'a>(
+        &self,
+        encoder: &'a mut wgpu::CommandEncoder,
+        frame: &Frame,
+        canvas: &Canvas,
+        p: &Pipelines,
+    ) -> wgpu::RenderPass<'a> {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("picture"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -248,6 +288,7 @@ impl Renderer {
             self.draw_some(&mut pass, frame, Form::Sphere(BUBBLE_LEVEL), &self.lists.bubbles, false);
         }
         self.draw_quads::<Stroke>(&mut pass, &p.lines_on_top, &self.strokes, on_top..all);
+        pass
     }
 
     fn draw_bodies(&self, pass: &mut wgpu::RenderPass<'_>, frame: &Frame, edges: bool) {

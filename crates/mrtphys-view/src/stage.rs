@@ -1,12 +1,17 @@
 //! From a world to a picture: which body is drawn with which surface in which color, and where it is.
 
-use crate::camera::Camera;
-use crate::frame::{Batch, Frame, Light, Look, Wall};
+use crate::camera::{Camera, Ray};
+use crate::dress::{Dress, Legend, Paint};
+use crate::frame::{Batch, Frame, Highlighted, Instance, Light, Look, Wall};
 use crate::mesh::Mesh;
 use crate::palette::{Rgb, default_color, varied};
+use crate::pick::{self, Hit};
+use crate::poses::Poses;
 use crate::walls;
-use mrtphys::bounds::Aabb;
+use mrtphys::bounds::{Aabb, Ball};
+use mrtphys::contact::Other;
 use mrtphys::math::Quat;
+use mrtphys::model::Inertia;
 use mrtphys::shape::{Polyhedron, Quadrangle, Shape, Sphere};
 use mrtphys::{BodyId, Real, Vec3, World};
 use mrtphys_scene::Loaded;
@@ -18,8 +23,8 @@ const FROM: Vec3 = Vec3::new(1.5, 1.0, 2.5);
 /// Strength of the viewer's own light beside the first light of a scene without lights.
 const FILL: f32 = 0.16;
 
-/// The default surface of a body.
-#[derive(Clone, Copy, Debug)]
+/// A body as it is drawn.
+#[derive(Clone, Debug)]
 struct Actor {
     id: BodyId,
     /// number of a surface; `None`: a sphere
@@ -27,38 +32,22 @@ struct Actor {
     /// largest distance of a drawn point from the body's origin \[m\]
     reach: Real,
     color: Rgb,
-}
-
-/// Positions and orientations of the bodies of a stage, in its order: the state that a picture shows.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Poses {
-    /// centres of mass \[m\]
-    pub positions: Vec<Vec3>,
-    /// orientations
-    pub orientations: Vec<Quat>,
-}
-
-impl Poses {
-    /// The state between two, `part` of the way from `a` to `b`: positions along the straight line, orientations along the
-    /// shorter way round.
-    pub fn set_between(&mut self, a: &Poses, b: &Poses, part: Real) {
-        self.positions.clear();
-        self.orientations.clear();
-        self.positions.extend(a.positions.iter().zip(&b.positions).map(|(p, q)| *p + (*q - *p) * part));
-        self.orientations.extend(a.orientations.iter().zip(&b.orientations).map(|(p, q)| between(*p, *q, part)));
-    }
-}
-
-/// Normalized linear interpolation: for the small angles between two steps the same as the great circle to third order.
-fn between(a: Quat, b: Quat, part: Real) -> Quat {
-    let sign = if a.dot(b) < 0.0 { -1.0 } else { 1.0 };
-    let mix = |x: Real, y: Real| x * (1.0 - part) + sign * y * part;
-    Quat::new(mix(a.x, b.x), mix(a.y, b.y), mix(a.z, b.z), mix(a.w, b.w)).try_normalize().unwrap_or(b)
+    shape: Arc<dyn Shape>,
+    /// smallest enclosing sphere, in the body's own coordinates
+    ball: Ball,
+    /// number of the name of its kind
+    kind: u32,
+    /// mass \[kg\]
+    mass: Real,
+    inertia: Inertia,
 }
 
 /// What the bodies and boundaries of a world look like. Made once for a scene, and again when bodies come or go.
 pub struct Stage {
     actors: Vec<Actor>,
+    /// number of the actor by the first part of the body's handle; beyond the actors: none
+    numbers: Vec<u32>,
+    kinds: Vec<String>,
     meshes: Vec<Arc<Mesh>>,
     walls: Vec<Wall>,
     lights: Vec<Light>,
@@ -83,7 +72,8 @@ impl Stage {
         let light = |l: &mrtphys_scene::scene::Light| Light { direction: l.direction, color: l.color.rgb, strength };
         let lights = lights.iter().map(light).collect();
         let walls = walls::walls_of(loaded, &bounds, camera.up.try_normalize().unwrap_or(Vec3::Y));
-        Stage { actors, meshes: cast.meshes, walls, lights, camera, bounds }
+        let numbers = numbers_of(&actors);
+        Stage { actors, numbers, kinds: cast.kinds, meshes: cast.meshes, walls, lights, camera, bounds }
     }
 
     /// How many bodies there are.
@@ -94,6 +84,99 @@ impl Stage {
     /// The bodies, in the order of the poses.
     pub fn bodies(&self) -> impl ExactSizeIterator<Item = BodyId> + '_ {
         self.actors.iter().map(|a| a.id)
+    }
+
+    /// The number of a body in the stage and its poses; `None`: it is not of this stage.
+    pub fn index(&self, id: BodyId) -> Option<usize> {
+        let number = *self.numbers.get(id.to_parts().0 as usize)? as usize;
+        (self.actors.get(number)?.id == id).then_some(number)
+    }
+
+    /// The body of a number.
+    pub fn body(&self, index: usize) -> Option<BodyId> {
+        self.actors.get(index).map(|a| a.id)
+    }
+
+    /// The body's own color. Panics if there is no body of this number, as do the following.
+    pub fn color(&self, index: usize) -> Rgb {
+        self.actors[index].color
+    }
+
+    /// The name of the kind of the body's shape.
+    pub fn kind(&self, index: usize) -> &str {
+        &self.kinds[self.actors[index].kind as usize]
+    }
+
+    /// Whether the body never moves: its mass is infinite.
+    pub fn is_fixed(&self, index: usize) -> bool {
+        self.actors[index].mass == Real::INFINITY
+    }
+
+    /// Largest distance of a drawn point from the body's origin \[m\].
+    pub fn reach(&self, index: usize) -> Real {
+        self.actors[index].reach
+    }
+
+    /// Smallest enclosing sphere of the body, in its own coordinates.
+    pub fn bounding_sphere(&self, index: usize) -> Ball {
+        self.actors[index].ball
+    }
+
+    /// Whether the body is drawn as a sphere about its origin.
+    pub fn is_sphere(&self, index: usize) -> bool {
+        self.actors[index].mesh.is_none()
+    }
+
+    /// Kinetic energy \[J\] of the body with this orientation and these velocities, with the mass that it had when the stage
+    /// was made; zero for one that never moves.
+    pub fn kinetic_energy(&self, index: usize, orientation: Quat, velocity: Vec3, angular_velocity: Vec3) -> Real {
+        let Actor { mass, inertia, .. } = &self.actors[index];
+        if *mass == Real::INFINITY {
+            return 0.0;
+        }
+        let momentum = inertia.angular_momentum(orientation, angular_velocity);
+        0.5 * (mass * velocity.length_squared() + momentum.dot(angular_velocity))
+    }
+
+    /// The kinds of shape that there are.
+    pub fn kinds(&self) -> &[String] {
+        &self.kinds
+    }
+
+    /// The front-most body that a ray meets, exactly: a sphere, or the triangles of a polyhedron, entered from outside; a plate
+    /// from either side. As in the picture of [`Camera::ray`]'s camera, whatever its [`Look`].
+    pub fn pick(&self, poses: &Poses, ray: Ray) -> Option<Hit> {
+        let mut best: Option<Hit> = None;
+        let mut most = Real::INFINITY;
+        let placed = self.actors.iter().zip(&poses.positions).zip(&poses.orientations);
+        for (index, ((actor, &position), &q)) in placed.enumerate() {
+            if !pick::comes_near(&ray, position, actor.reach, most) {
+                continue;
+            }
+            let found = pick::enters(&ray, &*actor.shape, actor.reach, position, q);
+            if let Some(distance) = found.filter(|d| *d < most) {
+                most = distance;
+                best = Some(Hit { body: actor.id, index, point: ray.at(distance), distance });
+            }
+        }
+        best
+    }
+
+    /// Counts the contacts of every body in the world's last step, in the order of the stage.
+    pub fn count_contacts(&self, world: &World, counts: &mut Vec<u32>) {
+        counts.clear();
+        counts.resize(self.actors.len(), 0);
+        let mut count = |slot: u32| {
+            if let Some(i) = world.body_in_slot(slot).and_then(|id| self.index(id)) {
+                counts[i] += 1;
+            }
+        };
+        for contact in &world.contacts().list {
+            count(contact.a);
+            if let Other::Body(b) = contact.b {
+                count(b);
+            }
+        }
     }
 
     /// The scene's camera, else one that shows everything.
@@ -118,24 +201,59 @@ impl Stage {
         }
     }
 
-    /// Fills a picture. Its overlay is left as it is.
+    /// Fills a picture of the bodies as the scene colors them. Its overlay is left as it is.
     pub fn fill(&self, camera: Camera, look: Look, poses: &Poses, frame: &mut Frame) {
+        self.fill_dressed(camera, look, &Dress::default(), poses, frame);
+    }
+
+    /// Fills a picture of the bodies in this dress. Its overlay is left as it is. Returns what the colors mean; `None`: they are
+    /// the bodies' own, because that was asked for or what the coloring needs is missing or not of as many bodies.
+    pub fn fill_dressed(
+        &self,
+        camera: Camera,
+        look: Look,
+        dress: &Dress<'_>,
+        poses: &Poses,
+        frame: &mut Frame,
+    ) -> Option<Legend> {
         frame.restart(camera, look);
         if frame.batches.len() != self.meshes.len()
             || !frame.batches.iter().zip(&self.meshes).all(|(b, m)| Arc::ptr_eq(&b.mesh, m))
         {
             frame.batches = self.meshes.iter().map(|m| Batch { mesh: m.clone(), instances: Vec::new() }).collect();
         }
-        for ((actor, &position), &q) in self.actors.iter().zip(&poses.positions).zip(&poses.orientations) {
-            let [r, g, b] = actor.color;
+        let paint = Paint::new(self, dress, look.theme, poses);
+        let placed = self.actors.iter().zip(&poses.positions).zip(&poses.orientations);
+        for (i, ((actor, &position), &q)) in placed.enumerate() {
+            let [r, g, b] = paint.color(i);
             let Some(instance) = frame.instance(position, actor.reach, q, [r, g, b, 255]) else { continue };
             match actor.mesh {
-                None => frame.spheres.push(instance),
+                None => frame.spheres.push(Instance { marks: look.marks.into(), ..instance }),
                 Some(m) => frame.batches[m as usize].instances.push(instance),
             }
         }
+        self.outline(dress, poses, frame);
+        self.surroundings(camera, look, poses, frame);
+        paint.legend()
+    }
+
+    fn outline(&self, dress: &Dress<'_>, poses: &Poses, frame: &mut Frame) {
+        for &i in dress.highlight {
+            let Some(actor) = self.actors.get(i) else { continue };
+            let (Some(&position), Some(&q)) = (poses.positions.get(i), poses.orientations.get(i)) else { continue };
+            if let Some(body) = frame.instance(position, actor.reach, q, [255; 4]) {
+                frame.highlight.push(Highlighted { batch: actor.mesh.map(|m| m as usize), body });
+            }
+        }
+    }
+
+    fn surroundings(&self, camera: Camera, look: Look, poses: &Poses, frame: &mut Frame) {
         if look.walls {
-            frame.walls.extend_from_slice(&self.walls);
+            // Where the bodies have come to: what is not finite is left out.
+            let there = poses.positions.iter().copied().filter(|p| p.is_finite());
+            let bodies =
+                if self.walls.iter().any(|w| w.endless.is_some()) { Aabb::of_points(there) } else { self.bounds };
+            frame.walls.extend(self.walls.iter().map(|w| walls::grown(w, &bodies)));
         }
         if self.lights.is_empty() {
             frame.lights.extend(default_lights(&camera));
@@ -166,6 +284,13 @@ pub fn frame_of(loaded: &Loaded, look: Look) -> Frame {
     frame
 }
 
+fn numbers_of(actors: &[Actor]) -> Vec<u32> {
+    let place = |a: &Actor| a.id.to_parts().0 as usize;
+    let mut numbers = vec![u32::MAX; actors.iter().map(|a| place(a) + 1).max().unwrap_or(0)];
+    actors.iter().enumerate().for_each(|(i, a)| numbers[place(a)] = i as u32);
+    numbers
+}
+
 fn bounds_of(loaded: &Loaded, actors: &[Actor]) -> Aabb {
     let around = |a: &Actor| {
         let (p, _) = loaded.world.pose(a.id).ok()?;
@@ -184,6 +309,7 @@ fn bounds_of(loaded: &Loaded, actors: &[Actor]) -> Aabb {
 /// Finds a surface for each body; similar bodies share one.
 #[derive(Default)]
 struct Casting {
+    kinds: Vec<String>,
     meshes: Vec<Arc<Mesh>>,
     /// surface by the bits of its single-precision corners
     by_form: BTreeMap<Vec<u32>, u32>,
@@ -201,7 +327,17 @@ impl Casting {
         let number = id.to_parts().0 as usize;
         let by_default = || varied(default_color(&body.kind, body.mass == Real::INFINITY), number);
         let color = loaded.color(id).map_or_else(by_default, |c| c.rgb);
-        Some(Actor { id, mesh, reach, color })
+        let kind = self.kind(&body.kind);
+        let ball = body.shape.bounding_sphere();
+        Some(Actor { id, mesh, reach, color, shape: body.shape, ball, kind, mass: body.mass, inertia: body.inertia })
+    }
+
+    fn kind(&mut self, name: &str) -> u32 {
+        let found = self.kinds.iter().position(|k| k == name);
+        found.unwrap_or_else(|| {
+            self.kinds.push(name.to_string());
+            self.kinds.len() - 1
+        }) as u32
     }
 
     fn surface(&mut self, shape: &Arc<dyn Shape>) -> (Option<u32>, Real) {
@@ -258,7 +394,7 @@ mod tests {
             let loaded = loaded(text);
             let frame = frame_of(&loaded, Look::default());
             assert_eq!(frame.bodies().count(), loaded.world.body_count(), "{name}");
-            assert_eq!(frame.walls.len(), loaded.world.boundaries().len(), "{name}");
+            assert!(frame.walls.len() >= loaded.world.boundaries().len(), "{name}");
             assert!(frame.batches.len() <= 8, "{name}: similar bodies share a surface");
             let all = frame.bodies().all(|b| b.scale > 0.0 && b.position.iter().all(|x| x.is_finite()));
             assert!(all, "{name}");
@@ -297,22 +433,6 @@ mod tests {
     }
 
     #[test]
-    fn what_is_between_two_states_is_halfway() {
-        let quarter = Quat::from_axis_angle(Vec3::Y, 0.5);
-        let minus = Quat::new(-quarter.x, -quarter.y, -quarter.z, -quarter.w);
-        let a = Poses { positions: vec![Vec3::ZERO], orientations: vec![Quat::IDENTITY] };
-        let mut c = Poses::default();
-        for q in [quarter, minus] {
-            let b = Poses { positions: vec![Vec3::X * 4.0], orientations: vec![q] };
-            c.set_between(&a, &b, 0.5);
-            assert_eq!(c.positions[0], Vec3::X * 2.0);
-            assert!(c.orientations[0].dot(Quat::from_axis_angle(Vec3::Y, 0.25)) > 1.0 - 1e-12);
-            c.set_between(&a, &b, 0.0);
-            assert_eq!(c, a);
-        }
-    }
-
-    #[test]
     fn filling_again_allocates_no_new_lists() {
         let loaded = loaded(mrtphys_scene::gallery_scene("thesis/cube-4").unwrap());
         let stage = Stage::new(&loaded);
@@ -327,6 +447,34 @@ mod tests {
         stage.read(&loaded.world, &mut poses);
         stage.fill(stage.camera(), Look::default(), &poses, &mut frame);
         assert_eq!(before, places(&frame, &poses));
+    }
+
+    #[test]
+    fn contacts_are_counted_for_the_bodies_that_have_them_wherever_they_are_stored() {
+        let mut loaded = loaded(mrtphys_scene::gallery_scene("thesis/cube-4").unwrap());
+        let stage = Stage::new(&loaded);
+        let mut counts = Vec::new();
+        let mut seen = 0;
+        for _ in 0..60 {
+            loaded.world.sort_storage();
+            loaded.world.frame().unwrap();
+            stage.count_contacts(&loaded.world, &mut counts);
+            let list = &loaded.world.contacts().list;
+            let sides = list.iter().map(|c| if matches!(c.b, Other::Body(_)) { 2 } else { 1 });
+            assert_eq!(counts.iter().sum::<u32>(), sides.sum::<u32>());
+            for contact in list {
+                // The point lies on the body that is said to touch there.
+                let id = loaded.world.body_in_slot(contact.a).unwrap();
+                let i = stage.index(id).unwrap();
+                assert!(counts[i] > 0 && stage.body(i) == Some(id));
+                let distance = (loaded.world.pose(id).unwrap().0 - contact.point).length();
+                assert!(distance < 1.2 * stage.reach(i), "{distance} of {}", stage.reach(i));
+                seen += 1;
+            }
+        }
+        assert!(seen > 20, "{seen}");
+        assert_eq!(loaded.world.body_in_slot(u32::MAX), None);
+        assert_eq!((stage.index(BodyId::from_parts(0, 9, 9)), stage.body(9999)), (None, None));
     }
 
     #[test]

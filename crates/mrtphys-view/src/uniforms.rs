@@ -1,6 +1,6 @@
 //! What the shaders know about a picture as a whole.
 
-use crate::frame::{Frame, MOST_LIGHTS};
+use crate::frame::{Frame, Illumination, Light, MOST_LIGHTS};
 use crate::matrix::Matrix;
 use crate::palette::linear;
 use mrtphys::{Real, Vec3};
@@ -19,6 +19,7 @@ pub struct Uniforms {
     base: [f32; 4],
     ink: [f32; 4],
     paper: [f32; 4],
+    accent: [f32; 4],
     lamps: [[[f32; 4]; 2]; MOST_LIGHTS],
 }
 
@@ -42,13 +43,14 @@ impl Uniforms {
         let colors = frame.look.theme.colors();
         let mut lamps = [[[0.0; 4]; 2]; MOST_LIGHTS];
         let mut count = 0;
-        for light in &frame.lights {
+        let equation = Illumination::ALL.iter().position(|i| i.0 == frame.look.illumination).unwrap_or(0) as f32;
+        for light in lamps_of(frame) {
             let Some(direction) = light.direction.try_normalize() else { continue };
             let Some(lamp) = lamps.get_mut(count) else { break };
             *lamp = [four(single(-direction), 0.0), four(linear(light.color).map(|c| c * light.strength), 0.0)];
             count += 1;
         }
-        let first = frame.lights.iter().find_map(|l| l.direction.try_normalize());
+        let first = lamps_of(frame).iter().find_map(|l| l.direction.try_normalize());
         let (shadow, radius) = match first {
             Some(direction) if casts_shadows(frame) => shadow_view(frame, direction, shadow_size),
             _ => (Matrix([[0.0; 4]; 4]), 0.0),
@@ -60,11 +62,12 @@ impl Uniforms {
             eye: four(frame.place(frame.camera.eye), 1.0),
             up: four(single(up), 0.0),
             size: [width as f32, height as f32, edge_width(height), 2.0 * radius as f32 / shadow_size as f32],
-            counts: [count as f32, f32::from(radius > 0.0), 1.0 / shadow_size as f32, 0.0],
+            counts: [count as f32, f32::from(radius > 0.0), 1.0 / shadow_size as f32, equation],
             sky: four(linear(colors.sky), 1.0),
             base: four(linear(colors.base), 1.0),
             ink: four(linear(colors.ink), 1.0),
             paper: four(linear(colors.paper), 1.0),
+            accent: four(linear(colors.accent), 1.0),
             lamps,
         }
     }
@@ -78,6 +81,11 @@ impl Uniforms {
 /// Lines keep their part of the picture in large ones, and stay a pixel wide in small ones.
 pub fn edge_width(height: u32) -> f32 {
     EDGE_WIDTH * (height as f32 / 720.0).max(1.0)
+}
+
+/// The lights that shine in a picture.
+fn lamps_of(frame: &Frame) -> &[Light] {
+    if frame.look.illumination == Illumination::Ambient { &[] } else { &frame.lights }
 }
 
 fn casts_shadows(frame: &Frame) -> bool {
@@ -118,7 +126,7 @@ fn shadow_view(frame: &Frame, direction: Vec3, texels: u32) -> (Matrix, Real) {
 mod tests {
     use super::*;
     use crate::camera::Camera;
-    use crate::frame::{Instance, Light, Look};
+    use crate::frame::{Instance, Look};
     use mrtphys::math::Quat;
 
     fn frame() -> Frame {

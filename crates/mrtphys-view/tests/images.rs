@@ -1,54 +1,19 @@
 //! Pictures, where there is a graphics driver. Without one the tests say that they were skipped.
 
+mod common;
+
+use common::{SIZE, ball, bright, count, draw, renderer};
 use mrtphys::Vec3;
 use mrtphys::math::Quat;
 use mrtphys::shape::Quadrangle;
-use mrtphys_view::frame::{Batch, Light};
+use mrtphys_view::frame::Batch;
 use mrtphys_view::mesh::Mesh;
 use mrtphys_view::overlay::{Block, Line, Point};
-use mrtphys_view::{Camera, Frame, Image, Look, Mode, Quality, Renderer, Theme, ViewError, frame_of};
+use mrtphys_view::{Image, Look, Mode, Quality, Renderer, Theme, ViewError, frame_of};
 use std::sync::Arc;
-
-const SIZE: (u32, u32) = (200, 160);
-
-fn renderer(test: &str) -> Option<Renderer> {
-    match Renderer::new() {
-        Ok(renderer) => Some(renderer),
-        Err(e @ ViewError::NoAdapter(_)) => {
-            // Past the capture of the test harness: a test that did nothing must not look like one that passed.
-            use std::io::Write;
-            let _ = writeln!(std::io::stderr(), "SKIPPED {test}: {e}");
-            None
-        }
-        Err(e) => panic!("{e}"),
-    }
-}
-
-/// A blue ball of radius 1 m in the middle of a picture 4 m high at its centre, lit from the upper right.
-fn ball(mode: Mode) -> Frame {
-    let fov_deg = 2.0 * 0.4f64.atan().to_degrees();
-    let camera = Camera { eye: Vec3::new(0.0, 0.0, 5.0), look_at: Vec3::ZERO, up: Vec3::Y, fov_deg };
-    let look = Look { mode, smooth: Some(true), shadows: false, ..Look::default() };
-    let mut frame = Frame::new(camera, look);
-    frame.spheres.extend(frame.instance(Vec3::ZERO, 1.0, Quat::IDENTITY, [0, 114, 178, 255]));
-    frame.lights.push(Light { direction: Vec3::new(-1.0, -1.0, -1.0), color: [255; 3], strength: 1.0 });
-    frame
-}
-
-fn draw(renderer: &mut Renderer, frame: &Frame) -> Image {
-    renderer.render(frame, SIZE.0, SIZE.1).unwrap()
-}
 
 fn is_blue(p: [u8; 3]) -> bool {
     i32::from(p[2]) > i32::from(p[0]) + 40
-}
-
-fn bright(p: [u8; 3]) -> i32 {
-    p.iter().map(|&c| i32::from(c)).sum()
-}
-
-fn count(image: &Image, is: impl Fn([u8; 3]) -> bool) -> usize {
-    image.rgba.chunks_exact(4).filter(|p| is([p[0], p[1], p[2]])).count()
 }
 
 fn blue_part(image: &Image) -> f64 {

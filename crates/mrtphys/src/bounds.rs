@@ -138,30 +138,24 @@ pub fn place(model: &Model, state: &State, work: &mut Work) -> Real {
     let lines = &state.lines;
     // Bits of numbers that are not negative are in order as the numbers are, so threads agree on the largest.
     let fastest = AtomicU64::new(0);
-    let note_speeds = |lines: &[Line]| {
-        let mut largest = 0.0;
-        for line in lines {
-            let r2 = line.radius * line.radius;
-            if line.v.length_squared() > largest * r2 {
-                largest = line.v.length_squared() / r2;
-            }
-        }
+    let note = |largest: Real| {
         fastest.fetch_max(largest.to_bits(), Ordering::Relaxed);
     };
     work.balls.resize(lines.len(), Ball::EMPTY);
     if model.all_spheres {
         work.rotations.clear();
         par::for_each_block(&mut work.balls, |first, balls| {
-            let lines = &lines[first..first + balls.len()];
-            for (ball, line) in balls.iter_mut().zip(lines) {
+            let mut largest = 0.0;
+            for (ball, line) in balls.iter_mut().zip(&lines[first..]) {
                 *ball = Ball { center: line.x, radius: line.radius };
+                largest = faster(largest, line);
             }
-            note_speeds(lines);
+            note(largest);
         });
     } else {
         work.rotations.resize(lines.len(), Mat3::IDENTITY);
         par::for_each_block2(&mut work.balls, &mut work.rotations, |first, balls, rotations| {
-            note_speeds(&lines[first..first + balls.len()]);
+            note(lines[first..first + balls.len()].iter().fold(0.0, faster));
             for (i, (ball, rotation)) in balls.iter_mut().zip(rotations).enumerate() {
                 place_one(model, state, first + i, ball, rotation);
             }
@@ -178,6 +172,13 @@ pub fn place(model: &Model, state: &State, work: &mut Work) -> Real {
         }
     });
     Real::from_bits(fastest.into_inner())
+}
+
+/// The larger of this and the square of the body's speed over its radius \[1/s2\].
+#[inline(always)]
+fn faster(largest: Real, line: &Line) -> Real {
+    let (v2, r2) = (line.v.length_squared(), line.radius * line.radius);
+    if v2 > largest * r2 { v2 / r2 } else { largest }
 }
 
 fn place_one(model: &Model, state: &State, slot: usize, ball: &mut Ball, rotation: &mut Mat3) {

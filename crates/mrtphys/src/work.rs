@@ -3,9 +3,10 @@
 use crate::bounds::{Aabb, Ball};
 use crate::broad::{BroadPhase, Candidates};
 use crate::contact::ContactList;
-use crate::contact::collect::Block;
+use crate::contact::collect::{Block, ContactPlace};
 use crate::counters::Counters;
 use crate::event::StepEvent;
+use crate::impact::parts::Parts;
 use crate::math::{Mat3, Vec3};
 use crate::state::{Line, Spin};
 use std::time::Duration;
@@ -29,6 +30,12 @@ pub struct Work {
     pub candidates: Candidates,
     /// where blocks of candidates write their contacts
     pub blocks: Vec<Block>,
+    /// the same for candidates of a boundary
+    pub wall_blocks: Vec<Block>,
+    /// where contacts are before they are in order
+    pub places: Vec<ContactPlace>,
+    /// memory for answering contacts in parts of the storage
+    pub parts: Parts,
     /// contacts of the step
     pub contacts: ContactList,
     /// impacts of the step, where they are recorded

@@ -62,6 +62,15 @@ fn ink(in: Stroke) -> @location(0) vec4<f32> {
     return vec4<f32>(in.color.rgb, in.color.a * cover);
 }
 
+// Where an outlined body's edges are: a plate seen from its edge has nothing else.
+@fragment
+fn covered(in: Stroke) -> @location(0) vec4<f32> {
+    if length(vec2<f32>(in.across, max(abs(in.along) - in.half_length, 0.0))) > 0.75 {
+        discard;
+    }
+    return vec4<f32>(1.0);
+}
+
 @vertex
 fn line(
     @builtin(vertex_index) number: u32,

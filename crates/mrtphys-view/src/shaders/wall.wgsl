@@ -46,13 +46,13 @@ fn face(in: Face) -> @location(0) vec4<f32> {
     let line = clamp(1.0 - min(off.x, off.y), 0.0, 1.0) * clamp(0.5 / max(step.x, step.y) - 1.0, 0.0, 1.0);
     if in.kind.x > 0.5 {
         let fade = 1.0 - smoothstep(0.35, 1.0, length(in.on_face));
-        color = vec4<f32>(mix(color.rgb, picture.ink.rgb, 0.22 * line), color.a * fade);
-        color.a = max(color.a, 0.35 * line * fade);
+        color = vec4<f32>(mix(color.rgb, picture.ink.rgb, 0.34 * line), color.a * fade);
+        color.a = max(color.a, 0.45 * line * fade);
     }
     if in.kind.y > 0.5 {
         let facing = dot(in.normal, picture.lamps[0].direction.xyz);
         // A little light and shade, so that the floor and the walls are told apart.
-        color = vec4<f32>(color.rgb * (0.80 + 0.22 * max(facing, 0.0)), color.a);
+        color = vec4<f32>(color.rgb * select(0.80 + 0.22 * max(facing, 0.0), 0.93, picture.counts.w < LAMBERT), color.a);
         let shade = (1.0 - lit(in.position, in.normal)) * smoothstep(0.0, 0.35, facing);
         let dark = 0.42 * shade * select(1.0, 1.0 - smoothstep(0.35, 1.0, length(in.on_face)), in.kind.x > 0.5);
         // A shadow is seen even on a face that is hardly there.

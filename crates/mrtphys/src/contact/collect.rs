@@ -2,7 +2,7 @@
 
 use super::let_back::{LetBack, Standing};
 use super::memory::{pair_key, wall_key};
-use super::{Contact, Other};
+use super::{Contact, ContactList, Other};
 use crate::bounds::Ball;
 use crate::broad::BoundsView;
 use crate::def::ContactMode;
@@ -14,6 +14,7 @@ use crate::par;
 use crate::shape::LimitPlane;
 use crate::state::State;
 use crate::work::Work;
+use rayon::prelude::*;
 
 /// Candidates in a block of the narrow phase.
 const BLOCK: usize = 512;
@@ -23,6 +24,8 @@ const BLOCK: usize = 512;
 pub struct Block {
     contacts: Vec<Contact>,
     touches: Touches,
+    /// first of its manifold points among those of all blocks
+    first_point: u32,
 }
 
 /// Asks the broad phase.
@@ -54,29 +57,63 @@ pub fn collect(model: &Model, state: &State, let_back: &mut LetBack, work: &mut 
         mode: model.settings.contact,
         only_spheres: model.all_spheres && model.spheres_meet_as_spheres,
     };
-    let contacts = &mut work.contacts;
-    contacts.list.clear();
-    contacts.points.clear();
-    let mut take = |blocks: &mut [Block]| {
-        for block in blocks {
-            let shift = contacts.points.len() as u32;
-            contacts.points.append(&mut block.touches.points);
-            contacts.list.extend(block.contacts.iter().map(|c| Contact { first_point: c.first_point + shift, ..*c }));
-        }
-    };
-    let n = par::blocks_into(&work.candidates.pairs, BLOCK, &mut work.blocks, |pairs, block| {
+    let pairs = par::blocks_into(&work.candidates.pairs, BLOCK, &mut work.blocks, |pairs, block| {
         block.clear();
         pairs.iter().for_each(|&[i, j]| scene.touch_pair(i, j, block));
     });
-    take(&mut work.blocks[..n]);
-    let n = par::blocks_into(&work.candidates.walls, BLOCK, &mut work.blocks, |walls, block| {
+    let walls = par::blocks_into(&work.candidates.walls, BLOCK, &mut work.wall_blocks, |walls, block| {
         block.clear();
         walls.iter().for_each(|&[body, wall]| scene.touch_wall(body, wall, block));
     });
-    take(&mut work.blocks[..n]);
-    // Contacts of one pair keep the order in which their routine reported them: that of their points.
-    contacts.list.sort_unstable_by_key(|c| (c.key, c.first_point));
-    work.counters.contacts += contacts.list.len() as u64;
+    put_in_order(&mut work.contacts, &mut work.places, [&mut work.blocks[..pairs], &mut work.wall_blocks[..walls]]);
+    work.counters.contacts += work.contacts.list.len() as u64;
+}
+
+/// Contacts from which several threads put them in order.
+const MANY: usize = 1024;
+
+/// Where a contact is before they are in order: its key, its block and its place there, from the highest bit down. What is
+/// sorted are these few bytes. Contacts of one pair are in one block, so they keep the order in which their routine reported
+/// them.
+pub type ContactPlace = u128;
+
+/// Puts the contacts of all blocks together in the order of response.
+fn put_in_order(contacts: &mut ContactList, places: &mut Vec<ContactPlace>, blocks: [&mut [Block]; 2]) {
+    contacts.points.clear();
+    places.clear();
+    let blocks = blocks.map(|some| {
+        for block in some.iter_mut() {
+            block.first_point = contacts.points.len() as u32;
+            contacts.points.append(&mut block.touches.points);
+        }
+        &*some
+    });
+    let all = || blocks[0].iter().chain(blocks[1]);
+    let count = all().map(|block| block.contacts.len()).sum();
+    places.resize(count, 0);
+    let mut rest = &mut places[..];
+    let pieces = all().map(|block| par::cut(&mut rest, block.contacts.len()));
+    let note = |(k, (block, piece)): (usize, (&Block, &mut [ContactPlace]))| {
+        for (i, (contact, place)) in block.contacts.iter().zip(piece).enumerate() {
+            *place = u128::from(contact.key) << 64 | (k as u128) << 32 | i as u128;
+        }
+    };
+    let at = |&place: &ContactPlace| {
+        let (k, walls) = ((place >> 32) as u32 as usize, blocks[0].len());
+        let block = if k < walls { &blocks[0][k] } else { &blocks[1][k - walls] };
+        let contact = block.contacts[place as u32 as usize];
+        Contact { first_point: contact.first_point + block.first_point, ..contact }
+    };
+    if count < MANY {
+        all().zip(pieces).enumerate().for_each(note);
+        places.sort_unstable();
+        contacts.list.clear();
+        contacts.list.extend(places.iter().map(at));
+    } else {
+        all().zip(pieces).enumerate().collect::<Vec<_>>().into_par_iter().for_each(note);
+        places.par_sort_unstable();
+        places.par_iter().with_min_len(BLOCK).map(at).collect_into_vec(&mut contacts.list);
+    }
 }
 
 /// Two-sided planes must know on which side each body is at home: called before a body first moves, and after every motion.

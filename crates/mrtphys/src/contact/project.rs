@@ -3,7 +3,7 @@
 
 use super::{Contact, Other};
 use crate::field::sum::potential_energy;
-use crate::impact::answer::{PairSurfaces, resting_speed};
+use crate::impact::answer::{PairSurfaces, all_is_elastic, resting_speed};
 use crate::ledger::Ledger;
 use crate::math::{Real, Vec3};
 use crate::model::Model;
@@ -17,6 +17,9 @@ const PASSES: usize = 16;
 /// Projects the overlaps out.
 pub(crate) fn project(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, ledger: &mut Ledger) {
     let model = recipe.model;
+    if all_is_elastic(model) {
+        return;
+    }
     let mut pairs = PairSurfaces::new(model);
     let stuck: Vec<Contact> = work
         .contacts

@@ -8,7 +8,7 @@ use crate::event::StepEvent;
 use crate::ledger::Ledger;
 use crate::math::{Real, Vec3, max};
 use crate::model::{BodyType, Model};
-use crate::state::State;
+use crate::state::{Line, State};
 use crate::step::Recipe;
 use crate::work::Work;
 
@@ -33,8 +33,17 @@ pub(crate) fn answer(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, le
 fn answer_in_order(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, ledger: &mut Ledger) {
     let contacts = std::mem::take(&mut work.contacts);
     let mut pairs = PairSurfaces::new(recipe.model);
-    for contact in &contacts.list {
-        answer_one(recipe, state, work, ledger, (contact, &contacts.points), &mut pairs);
+    if super::parts::is_worth_it(recipe, state, &contacts.list) {
+        let mut parts = std::mem::take(&mut work.parts);
+        for &left in parts.answer(recipe, state, &contacts.list, &mut work.counters) {
+            let contact = &contacts.list[left as usize];
+            answer_one(recipe, state, work, ledger, (contact, &contacts.points), &mut pairs);
+        }
+        work.parts = parts;
+    } else {
+        for contact in &contacts.list {
+            answer_one(recipe, state, work, ledger, (contact, &contacts.points), &mut pairs);
+        }
     }
     settle_piles(recipe, state, work, ledger, &contacts, &mut pairs);
     work.contacts = contacts;
@@ -84,8 +93,7 @@ pub(super) fn answer_one(
     pairs: &mut PairSurfaces<'_>,
 ) {
     let surface = pairs.of(contact);
-    let smooth = surface.friction == 0.0 && recipe.law.is_frictionless_at_zero();
-    if smooth && surface.spheres && surface.restitution == 1.0 {
+    if surface.is_smooth_bounce(recipe) {
         return bounce_smooth(recipe, state, work, contact);
     }
     let Some(found) = encounter(recipe, state, &work.accelerations, contact, surface) else { return };
@@ -184,36 +192,50 @@ pub(super) fn count(work: &mut Work, contact: &Contact) {
     work.counters.wall_impacts += u64::from(matches!(contact.b, Other::Wall(_)));
 }
 
-/// Elastic impact of two spheres, or of a sphere and what never moves, without friction: the impulse goes through both
-/// centres, so only velocities change. dp1 = -2 (v12 . n) / (1/m1 + 1/m2) n, equations (54), (55).
+/// Elastic impact of two spheres, or of a sphere and what never moves, without friction.
 fn bounce_smooth(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, contact: &Contact) {
     let n = contact.normal;
-    let a = &state.lines[contact.a as usize];
-    let (v_b, w_b) = match contact.b {
-        Other::Body(slot) => (state.lines[slot as usize].v, state.lines[slot as usize].inverse_mass),
-        Other::Wall(_) => (Vec3::ZERO, 0.0),
+    let a = state.lines[contact.a as usize];
+    let b = match contact.b {
+        Other::Body(slot) => Some(state.lines[slot as usize]),
+        Other::Wall(_) => None,
     };
-    let v = a.v - v_b;
-    let approach = v.dot(n);
-    let weight = a.inverse_mass + w_b;
-    if !(approach > 0.0) || weight == 0.0 {
-        return;
-    }
-    let j = -2.0 * approach / weight;
-    let (va, vb) = (a.v + n * (j * a.inverse_mass), v_b - n * (j * w_b));
-    if !(va.is_finite() && vb.is_finite()) {
-        return;
-    }
+    let Some(Bounce { va, vb, j }) = bounce(&a, b.as_ref(), n) else { return };
     state.lines[contact.a as usize].v = va;
     if let Other::Body(slot) = contact.b {
         state.lines[slot as usize].v = vb;
     }
     count(work, contact);
     if recipe.record_events {
-        let energy_change = 0.5 * j * (v + (va - vb)).dot(n);
+        let v_b = b.map_or(Vec3::ZERO, |b| b.v);
+        let energy_change = 0.5 * j * ((a.v - v_b) + (va - vb)).dot(n);
         let (a, b, point) = (contact.a, contact.b, contact.point);
         work.events.push(StepEvent { a, b, point, normal: n, impulse_n: -j, impulse_t: 0.0, energy_change });
     }
+}
+
+/// An elastic impact without friction of two spheres.
+pub(super) struct Bounce {
+    /// velocities after it \[m/s\]
+    pub va: Vec3,
+    pub vb: Vec3,
+    /// impulse on a along the normal \[Ns\]
+    pub j: Real,
+}
+
+/// The impulse goes through both centres, so only velocities change. dp1 = -2 (v12 . n) / (1/m1 + 1/m2) n, equations (54),
+/// (55). Without b: against what never moves. `None`: they do not approach, neither can move, or the answer is not finite.
+#[inline]
+pub(super) fn bounce(a: &Line, b: Option<&Line>, n: Vec3) -> Option<Bounce> {
+    let (v_b, w_b) = b.map_or((Vec3::ZERO, 0.0), |b| (b.v, b.inverse_mass));
+    let approach = (a.v - v_b).dot(n);
+    let weight = a.inverse_mass + w_b;
+    if !(approach > 0.0) || weight == 0.0 {
+        return None;
+    }
+    let j = -2.0 * approach / weight;
+    let (va, vb) = (a.v + n * (j * a.inverse_mass), v_b - n * (j * w_b));
+    (va.is_finite() && vb.is_finite()).then_some(Bounce { va, vb, j })
 }
 
 /// Gives a the impulse and b the opposite, both at the contact point.
@@ -300,6 +322,23 @@ pub(crate) struct PairSurface {
     pub restitution: Real,
     /// both are spheres, or a sphere and a boundary: without friction no torque can act
     pub spheres: bool,
+}
+
+impl PairSurface {
+    /// Whether contacts of the pair are answered by [`bounce`].
+    pub fn is_smooth_bounce(&self, recipe: &Recipe<'_>) -> bool {
+        self.friction == 0.0 && recipe.law.is_frictionless_at_zero() && self.spheres && self.restitution == 1.0
+    }
+}
+
+/// Whether no pair can have a restitution below 1: every rule of combination makes 1 of two ones.
+pub(crate) fn all_is_elastic(model: &Model) -> bool {
+    model
+        .types
+        .iter()
+        .map(|t| &t.surface)
+        .chain(model.boundaries.iter().map(|b| &b.surface))
+        .all(|s| s.restitution == 1.0)
 }
 
 /// Surface values of pairs of types; consecutive contacts mostly ask for the same.

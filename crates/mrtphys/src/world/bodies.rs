@@ -5,6 +5,7 @@ use super::checks::{
     check_surface, check_vector, checked_orientation, checked_spin, energy_factor, given_inertia, homogeneous_inertia,
     mass_value, usable,
 };
+use crate::bounds::Aabb;
 use crate::def::{BodyDef, Mass, Surface};
 use crate::error::{Error, Result};
 use crate::id::BodyId;
@@ -191,6 +192,33 @@ impl World {
     pub fn pose(&self, id: BodyId) -> Result<(Vec3, Quat)> {
         let slot = self.ids.slot(id, self.tag)?;
         Ok((self.state.lines[slot].x, self.state.spins[slot].q))
+    }
+
+    /// Velocity of the centre of mass \[m/s\] and angular velocity \[rad/s\], without the rest of [`Body`].
+    ///
+    /// # Errors
+    /// The handle is not valid.
+    pub fn motion(&self, id: BodyId) -> Result<(Vec3, Vec3)> {
+        let slot = self.ids.slot(id, self.tag)?;
+        let spin = &self.state.spins[slot];
+        Ok((self.state.lines[slot].v, self.model.body(slot).inertia.angular_velocity(spin.q, spin.l)))
+    }
+
+    /// Mass \[kg\], without the rest of [`Body`]; infinite for a fixed body.
+    ///
+    /// # Errors
+    /// The handle is not valid.
+    pub fn mass(&self, id: BodyId) -> Result<Real> {
+        self.ids.slot(id, self.tag).map(|slot| self.model.body(slot).mass)
+    }
+
+    /// Axis-parallel box round a body where it is now \[m\].
+    ///
+    /// # Errors
+    /// The handle is not valid.
+    pub fn bounding_box(&self, id: BodyId) -> Result<Aabb> {
+        let slot = self.ids.slot(id, self.tag)?;
+        Ok(self.model.body(slot).shape.bounding_box(self.state.lines[slot].x, &self.state.spins[slot].q.to_matrix()))
     }
 
     /// Puts a body elsewhere. The change of its potential energy is booked to `user`.

@@ -8,6 +8,30 @@ use crate::id::FieldId;
 use crate::model::Model;
 use std::sync::Arc;
 
+/// Names fields for ever: a number is never used again, so that the handle of a field that was removed is an error.
+#[derive(Clone, Debug, Default)]
+pub(super) struct FieldTable {
+    /// numbers of the force fields, in their order: ascending
+    forces: Vec<u32>,
+    /// numbers of the flow fields, in their order: ascending
+    flows: Vec<u32>,
+    next: u32,
+}
+
+impl FieldTable {
+    /// The number of a new field.
+    fn push(&mut self, flow: bool) -> u32 {
+        let number = self.next;
+        self.next += 1;
+        if flow {
+            self.flows.push(number)
+        } else {
+            self.forces.push(number)
+        }
+        number
+    }
+}
+
 impl World {
     /// Adds a force field; its potential energy, once the world has lived, is booked to `user`.
     ///
@@ -15,7 +39,7 @@ impl World {
     /// A body that the scope names is not in this world.
     pub fn add_force(&mut self, field: Arc<dyn ForceField>, scope: Scope) -> Result<FieldId> {
         self.check_scope(&scope)?;
-        let index = self.model.forces.len() as u32;
+        let index = self.fields.push(false);
         let reach = Reach::default();
         self.booking_all(|world| world.model.forces.push(PlacedForce { field, scope, reach }));
         self.scopes_epoch = None;
@@ -28,7 +52,7 @@ impl World {
     /// A body that the scope names is not in this world.
     pub fn add_flow(&mut self, field: Arc<dyn FlowField>, scope: Scope) -> Result<FieldId> {
         self.check_scope(&scope)?;
-        let index = self.model.flows.len() as u32;
+        let index = self.fields.push(true);
         self.scopes_epoch = None;
         self.model.flows.push(PlacedFlow { field, scope, reach: Reach::default() });
         Ok(FieldId { index, flow: true, world: self.tag })
@@ -40,11 +64,8 @@ impl World {
     /// # Errors
     /// The handle is not one of a force field of this world.
     pub fn set_force(&mut self, id: FieldId, field: Arc<dyn ForceField>) -> Result<()> {
-        let index = id.index as usize;
-        if id.world != self.tag || id.flow || index >= self.model.forces.len() {
-            return Err(Error::InvalidHandle { what: "field" });
-        }
-        self.booking_all(|world| world.model.forces[index].field = field);
+        let place = self.place_of_field(id, false)?;
+        self.booking_all(|world| world.model.forces[place].field = field);
         Ok(())
     }
 
@@ -53,12 +74,49 @@ impl World {
     /// # Errors
     /// The handle is not one of a flow field of this world.
     pub fn set_flow(&mut self, id: FieldId, field: Arc<dyn FlowField>) -> Result<()> {
-        let index = id.index as usize;
-        if id.world != self.tag || !id.flow || index >= self.model.flows.len() {
-            return Err(Error::InvalidHandle { what: "field" });
-        }
-        self.model.flows[index].field = field;
+        let place = self.place_of_field(id, true)?;
+        self.model.flows[place].field = field;
         Ok(())
+    }
+
+    /// Removes a force field; its potential energy, once the world has lived, is booked to `user`. The others keep their order
+    /// and their handles.
+    ///
+    /// # Errors
+    /// The handle is not one of a force field of this world.
+    pub fn remove_force(&mut self, id: FieldId) -> Result<()> {
+        let place = self.place_of_field(id, false)?;
+        self.booking_all(|world| drop(world.model.forces.remove(place)));
+        self.fields.forces.remove(place);
+        Ok(())
+    }
+
+    /// Removes a flow field. The others keep their order and their handles.
+    ///
+    /// # Errors
+    /// The handle is not one of a flow field of this world.
+    pub fn remove_flow(&mut self, id: FieldId) -> Result<()> {
+        let place = self.place_of_field(id, true)?;
+        self.model.flows.remove(place);
+        self.fields.flows.remove(place);
+        Ok(())
+    }
+
+    /// Handles of the force fields, in the order of [`forces`](World::forces).
+    pub fn force_ids(&self) -> impl ExactSizeIterator<Item = FieldId> + '_ {
+        self.fields.forces.iter().map(|&index| FieldId { index, flow: false, world: self.tag })
+    }
+
+    /// Handles of the flow fields, in the order of [`flows`](World::flows).
+    pub fn flow_ids(&self) -> impl ExactSizeIterator<Item = FieldId> + '_ {
+        self.fields.flows.iter().map(|&index| FieldId { index, flow: true, world: self.tag })
+    }
+
+    fn place_of_field(&self, id: FieldId, flow: bool) -> Result<usize> {
+        let numbers = if flow { &self.fields.flows } else { &self.fields.forces };
+        let ours = id.world == self.tag && id.flow == flow;
+        let place = numbers.binary_search(&id.index).ok().filter(|_| ours);
+        place.ok_or(Error::InvalidHandle { what: "field" })
     }
 
     /// The force fields.
@@ -120,4 +178,60 @@ fn resolve(scope: &Scope, count: usize, ids: &IdTable, world: u32) -> Reach {
     });
     let gone = matches!(carrier, Some(Err(_)));
     Reach { carrier: carrier.and_then(Result::ok), only, gone }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::def::{BodyDef, Settings};
+    use crate::field::{EarthGravity, UniformField, UniformFlow};
+    use crate::math::Vec3;
+    use crate::shape::Sphere;
+
+    fn uniform(x: f64) -> Arc<dyn ForceField> {
+        Arc::new(UniformField::new(Vec3::X * x).unwrap())
+    }
+
+    #[test]
+    fn a_removed_field_acts_no_more_and_its_handle_is_an_error_for_ever() {
+        let mut world = World::new(Settings::default()).unwrap();
+        let body = world.add_body(BodyDef::new(Sphere::new(0.5).unwrap())).unwrap();
+        let a = world.add_force(uniform(1.0), Scope::default()).unwrap();
+        let b = world.add_force(uniform(4.0), Scope::default()).unwrap();
+        world.remove_force(a).unwrap();
+        assert!(world.remove_force(a).is_err() && world.set_force(a, uniform(9.0)).is_err());
+        let c = world.add_force(uniform(16.0), Scope::default()).unwrap();
+        assert!(c != a && world.remove_force(a).is_err());
+        assert!(world.force_ids().eq([b, c]));
+        world.set_force(b, uniform(2.0)).unwrap();
+        (0..480).for_each(|_| world.step().unwrap());
+        let speed = world.body(body).unwrap().velocity.x;
+        assert!((speed - 18.0).abs() < 1e-9, "{speed}");
+    }
+
+    #[test]
+    fn the_potential_energy_of_a_removed_field_is_booked() {
+        let mut world = World::new(Settings::default()).unwrap();
+        world.add_body(BodyDef { position: Vec3::Y * 3.0, ..BodyDef::new(Sphere::new(0.5).unwrap()) }).unwrap();
+        let gravity = world.add_force(Arc::new(EarthGravity::default()), Scope::default()).unwrap();
+        world.step().unwrap();
+        let before = world.energy();
+        world.remove_force(gravity).unwrap();
+        assert!(before.potential > 29.0 && world.energy().potential == 0.0);
+        assert_eq!(world.ledger().user, -before.potential);
+    }
+
+    #[test]
+    fn flows_and_forces_have_handles_of_their_own() {
+        let mut world = World::new(Settings::default()).unwrap();
+        let flow = || -> Arc<dyn FlowField> { Arc::new(UniformFlow::new(Vec3::Z).unwrap()) };
+        let a = world.add_flow(flow(), Scope::default()).unwrap();
+        let b = world.add_force(uniform(1.0), Scope::default()).unwrap();
+        assert!(world.remove_force(a).is_err() && world.remove_flow(b).is_err());
+        assert!(world.flow_ids().eq([a]) && world.force_ids().eq([b]));
+        world.remove_flow(a).unwrap();
+        assert!(world.flows().is_empty() && world.set_flow(a, flow()).is_err());
+        let copy = world.clone();
+        assert!(copy.force_ids().eq([b]));
+    }
 }

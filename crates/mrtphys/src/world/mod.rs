@@ -13,6 +13,7 @@ use crate::counters::Counters;
 use crate::def::Settings;
 use crate::error::{Error, Result};
 use crate::event::ImpactEvent;
+use crate::id::BodyId;
 use crate::impact::{self, ImpactLaw};
 use crate::ledger::{Energy, Ledger};
 use crate::math::Real;
@@ -40,6 +41,7 @@ pub struct World {
     state: State,
     work: Work,
     ids: IdTable,
+    fields: fields::FieldTable,
     next_serial: u64,
     scopes_epoch: Option<u64>,
     law: Arc<dyn ImpactLaw>,
@@ -55,6 +57,31 @@ pub(crate) struct Books {
     pub totals: Counters,
     pub initial: Option<Energy>,
     pub largest_step: Real,
+}
+
+/// A copy that lives on by itself, bit for bit as the original would; handles of the original are handles of the copy too.
+/// Scratch memory is not copied, nor are events that nobody has fetched. Nor is a broad phase of the user's: the copy has the
+/// one that the settings say until [`set_broad_phase`] is called.
+///
+/// [`set_broad_phase`]: World::set_broad_phase
+impl Clone for World {
+    fn clone(&self) -> World {
+        World {
+            tag: self.tag,
+            kinds: self.kinds.clone(),
+            model: self.model.clone(),
+            state: self.state.clone(),
+            work: Work { broad: Some(broad::make(self.model.settings.broad_phase)), ..Work::default() },
+            ids: self.ids.clone(),
+            fields: self.fields.clone(),
+            next_serial: self.next_serial,
+            scopes_epoch: self.scopes_epoch,
+            law: self.law.clone(),
+            books: self.books.clone(),
+            recording: self.recording,
+            events: VecDeque::new(),
+        }
+    }
 }
 
 impl World {
@@ -97,6 +124,7 @@ impl World {
             state: State::default(),
             work,
             ids: IdTable::default(),
+            fields: fields::FieldTable::default(),
             next_serial: 0,
             scopes_epoch: None,
             law,
@@ -200,6 +228,11 @@ impl World {
     /// Contacts of the last step, for drawing.
     pub fn contacts(&self) -> &crate::contact::ContactList {
         &self.work.contacts
+    }
+
+    /// The body in a slot, as [`contacts`](World::contacts) names bodies: valid until bodies come or go or are sorted.
+    pub fn body_in_slot(&self, slot: u32) -> Option<BodyId> {
+        ((slot as usize) < self.body_count()).then(|| self.ids.id(slot as usize, self.tag))
     }
 
     /// Keys of the pairs that were in contact in the last step, ascending, where the friction law asks for them.

@@ -9,16 +9,18 @@
 
 mod cells;
 mod dense;
+mod lanes;
 mod sparse;
-mod walls;
+mod survey;
 
 use super::{BoundsView, BroadPhase, Candidates, Cell};
 use crate::bounds::{Aabb, Ball};
-use crate::math::{Real, max, min};
+use crate::math::{Real, Vec3, max, min};
 use crate::par;
 use cells::Frame;
-use dense::Dense;
+use dense::{Dense, Parts};
 use sparse::Sparse;
+use survey::Seen;
 
 /// Radii within a level differ at most by this factor.
 const LEVEL_RATIO: Real = 4.0;
@@ -27,13 +29,14 @@ const DENSE_CELLS_PER_BODY: usize = 16;
 /// Cells that are always affordable.
 const DENSE_CELLS_MIN: usize = 4096;
 /// Sorted bodies in a block of the pair scan.
-const SCAN_BLOCK: usize = 2048;
+const SCAN_BLOCK: usize = 1024;
 
 /// Counting-sorted cells, see the module's text.
 #[derive(Clone, Debug, Default)]
 pub struct SortedGrid {
     levels: Vec<Level>,
     outputs: Vec<Found>,
+    seen: Vec<Seen>,
 }
 
 /// Bodies of similar radius.
@@ -61,8 +64,8 @@ impl Default for Index {
 #[derive(Clone, Debug, Default)]
 struct Found {
     pairs: Vec<[u32; 2]>,
-    /// scratch: places of bodies to be compared
-    candidates: Vec<(u32, u32)>,
+    /// scratch: places of bodies that may meet
+    near: Vec<[u32; 2]>,
     tests: u64,
 }
 
@@ -72,14 +75,14 @@ impl BroadPhase for SortedGrid {
     }
 
     fn find(&mut self, view: &BoundsView<'_>, out: &mut Candidates) {
-        self.build(view);
+        let extent = survey::survey(view, &mut self.seen, out);
+        self.build(extent, view);
         for level in 0..self.levels.len() {
             self.scan_level(level, view, out);
             for coarser in 0..level {
                 self.scan_across(level, coarser, view, out);
             }
         }
-        walls::find(view, out);
     }
 
     fn spatial_order(&self) -> &[u32] {
@@ -103,8 +106,8 @@ impl BroadPhase for SortedGrid {
 
 impl SortedGrid {
     /// Sorts all bodies into levels, coarsest first, and each level into cells.
-    fn build(&mut self, view: &BoundsView<'_>) {
-        let Some(extent) = Extent::of(view.balls) else { return self.levels.clear() };
+    fn build(&mut self, extent: Option<Extent>, view: &BoundsView<'_>) {
+        let Some(extent) = extent else { return self.levels.clear() };
         if extent.smallest * LEVEL_RATIO >= extent.largest && extent.count == view.balls.len() {
             self.levels.resize_with(1, Level::default);
             self.levels[0].members.clear();
@@ -163,12 +166,10 @@ fn run_blocks(
     out: &mut Candidates,
     scan: impl Fn(usize, usize, &mut Found) + Sync,
 ) {
-    let blocks: Vec<usize> = (0..count.div_ceil(SCAN_BLOCK)).collect();
-    let used = par::blocks_into(&blocks, 1, outputs, |block, found| {
+    let used = par::ranges_into(count, SCAN_BLOCK, outputs, |range, found| {
         found.pairs.clear();
         found.tests = 0;
-        let first = block[0] * SCAN_BLOCK;
-        scan(first, (first + SCAN_BLOCK).min(count), found);
+        scan(range.start, range.end, found);
     });
     for found in &mut outputs[..used] {
         out.pairs.extend_from_slice(&found.pairs);
@@ -192,7 +193,7 @@ impl Index {
                 *self = Index::default();
             }
             if let Index::Dense(d) = self {
-                d.rebuild(frame, members, balls);
+                d.rebuild(frame, members, balls, Parts::of(extent.count));
             }
         } else {
             if !matches!(self, Index::Sparse(_)) {
@@ -214,8 +215,25 @@ struct Extent {
     count: usize,
 }
 
+impl Default for Extent {
+    fn default() -> Extent {
+        Extent { centers: Aabb::EMPTY, smallest: Real::INFINITY, largest: 0.0, count: 0 }
+    }
+}
+
 impl Extent {
-    const NONE: Extent = Extent { centers: Aabb::EMPTY, smallest: Real::INFINITY, largest: 0.0, count: 0 };
+    /// From the least and the largest of three coordinates and the radius.
+    fn between(low: [Real; 4], high: [Real; 4], count: usize) -> Extent {
+        let centers = Aabb { min: Vec3::new(low[0], low[1], low[2]), max: Vec3::new(high[0], high[1], high[2]) };
+        Extent { centers, smallest: low[3], largest: high[3], count }
+    }
+
+    fn join(&mut self, o: &Extent) {
+        self.centers = self.centers.union(&o.centers);
+        self.smallest = min(self.smallest, o.smallest);
+        self.largest = max(self.largest, o.largest);
+        self.count += o.count;
+    }
 
     fn add(&mut self, ball: &Ball) {
         if !ball.is_empty() {
@@ -227,14 +245,14 @@ impl Extent {
         }
     }
 
-    fn of(balls: &[Ball]) -> Option<Extent> {
-        let mut extent = Extent::NONE;
+    fn of(balls: &[Ball]) -> Extent {
+        let mut extent = Extent::default();
         balls.iter().for_each(|b| extent.add(b));
-        (extent.count > 0).then_some(extent)
+        extent
     }
 
     fn of_members(balls: &[Ball], members: &[u32]) -> Option<Extent> {
-        let mut extent = Extent::NONE;
+        let mut extent = Extent::default();
         members.iter().for_each(|&i| extent.add(&balls[i as usize]));
         (extent.count > 0).then_some(extent)
     }

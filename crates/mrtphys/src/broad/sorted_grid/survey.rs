@@ -1,0 +1,124 @@
+//! One look at every body: how far the bodies reach, and which of them reach a boundary. Boundaries never enter the cells: most
+//! bodies are told clear of all of them by one comparison with a box.
+
+use super::super::{BoundsView, Candidates};
+use super::Extent;
+use crate::bounds::{Aabb, Ball, BoundaryBounds};
+use crate::math::{Real, Vec3, max, min};
+use crate::par;
+
+/// What was seen of a block of bodies.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Seen {
+    extent: Extent,
+    /// slots of bodies that the box does not tell clear
+    near: Vec<u32>,
+    walls: Vec<[u32; 2]>,
+    tests: u64,
+}
+
+/// Reports every body that reaches behind a limit or meets a bounded one, and every body with each two-sided plane. Returns
+/// the extent of all bodies that are not empty; `None`: there is none.
+pub(super) fn survey(view: &BoundsView<'_>, seen: &mut Vec<Seen>, out: &mut Candidates) -> Option<Extent> {
+    let clear = Clear::of(view.boundaries);
+    let blocks = par::ranges_into(view.balls.len(), par::stream_block(view.balls.len()), seen, |range, seen| {
+        seen.look(&clear, range.start, range.end, view)
+    });
+    let mut extent = Extent::default();
+    for block in &seen[..blocks] {
+        extent.join(&block.extent);
+        out.walls.extend_from_slice(&block.walls);
+        out.sphere_tests += block.tests;
+    }
+    (extent.count > 0).then_some(extent)
+}
+
+impl Seen {
+    fn look(&mut self, clear: &Clear, first: usize, last: usize, view: &BoundsView<'_>) {
+        self.near.clear();
+        self.walls.clear();
+        self.tests = 0;
+        let balls = &view.balls[first..last];
+        // Four numbers a ball, side by side: what processors compare at once.
+        let (mut low, mut high) = ([Real::INFINITY; 4], [Real::NEG_INFINITY; 4]);
+        let near = &mut self.near;
+        for (k, ball) in balls.iter().enumerate() {
+            let four = [ball.center.x, ball.center.y, ball.center.z, ball.radius];
+            for axis in 0..4 {
+                low[axis] = min(low[axis], four[axis]);
+                high[axis] = max(high[axis], four[axis]);
+            }
+            if !clear.holds(ball) {
+                near.push((first + k) as u32);
+            }
+        }
+        self.extent = if low[3] >= 0.0 { Extent::between(low, high, balls.len()) } else { Extent::of(balls) };
+        for &slot in &self.near {
+            let ball = &view.balls[slot as usize];
+            if ball.is_empty() || view.is_fixed(slot) {
+                continue;
+            }
+            self.tests += view.boundaries.len() as u64;
+            for (wall, bounds) in view.boundaries.iter().enumerate() {
+                if reaches(bounds, ball) {
+                    self.walls.push([slot, wall as u32]);
+                }
+            }
+        }
+    }
+}
+
+fn reaches(bounds: &BoundaryBounds, ball: &Ball) -> bool {
+    match bounds.behind {
+        Some(_) => bounds.reaches_behind(ball),
+        None => bounds.reaches(ball),
+    }
+}
+
+/// Where no boundary is reached.
+struct Clear {
+    /// a ball inside of this box reaches no boundary; empty where a boundary is not an axis-parallel half-space
+    bounds: Aabb,
+    /// how far inside it must be beyond its radius \[m\]
+    allowance: Real,
+}
+
+impl Clear {
+    fn of(boundaries: &[BoundaryBounds]) -> Clear {
+        let bounds = clear_box(boundaries);
+        let size = max(bounds.min.max_abs(), bounds.max.max_abs());
+        // Where a side is open, bodies may be anywhere: none is told clear by the box. Without boundaries all are clear.
+        let allowance = match (boundaries.is_empty(), size.is_finite()) {
+            (true, _) => 0.0,
+            (false, true) => 64.0 * Real::EPSILON * size,
+            (false, false) => Real::INFINITY,
+        };
+        Clear { bounds, allowance }
+    }
+
+    #[inline(always)]
+    fn holds(&self, ball: &Ball) -> bool {
+        // The same differences as `reaches_behind` makes, and at least its allowance for rounding: inside of the box no
+        // coordinate is larger than `size`.
+        let r: Real = ball.radius * (1.0 + 64.0 * Real::EPSILON) + self.allowance;
+        let (to_min, to_max) = (ball.center - self.bounds.min, self.bounds.max - ball.center);
+        let nearest = |a: Vec3| min(min(a.x, a.y), a.z);
+        min(nearest(to_min), nearest(to_max)) > r
+    }
+}
+
+/// The box between the boundaries, see [`Clear`].
+fn clear_box(boundaries: &[BoundaryBounds]) -> Aabb {
+    let mut clear = Aabb::EVERYWHERE;
+    for b in boundaries {
+        let Some((normal, offset)) = b.behind else { return Aabb::EMPTY };
+        let axis = [Vec3::X, Vec3::Y, Vec3::Z].into_iter().position(|a| normal == a || normal == -a);
+        let Some(axis) = axis else { return Aabb::EMPTY };
+        if normal[axis] > 0.0 {
+            clear.min[axis] = max(clear.min[axis], offset);
+        } else {
+            clear.max[axis] = min(clear.max[axis], -offset);
+        }
+    }
+    clear
+}
