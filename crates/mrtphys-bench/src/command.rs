@@ -12,6 +12,8 @@ per second against kinetic theory, bodies that escaped, state hash.
 Usage: mrtphys bench [SCENE...] [--broad-phase NAME] [--threads N] [--rate STEPS_PER_SECOND] [--warm-up S] [--seconds S]
 
 SCENE is spheres-N or tetrahedra-N with N bodies along an edge of the cube; all of the standard ones if none is named.
+
+mrtphys bench peers --help: the same gases in other engines, side by side.
 ";
 
 /// The standard scenes with what is simulated before and while timing \[s\].

@@ -1,6 +1,7 @@
 //! The gases that are measured: n^3 bodies of radius 0.23/n on a jittered lattice in the unit cube, speeds of 1 m/s, numbered
 //! in shuffled order so that no broad phase profits from the lattice.
 
+use crate::peers::scene::{NeutralBody, NeutralShape, SceneData};
 use mrtphys::shape::{Polyhedron, Shape, Sphere};
 use mrtphys::{BodyDef, BroadPhaseKind, Result, Settings, Surface, Vec3, World};
 use std::sync::Arc;
@@ -25,6 +26,17 @@ pub struct GasSpec {
     pub rate: u32,
     /// broad phase
     pub broad_phase: BroadPhaseKind,
+}
+
+/// A gas away from its walls.
+struct Bulk {
+    /// volume and surface of the box that centres can reach \[m3\], \[m2\]
+    volume: f64,
+    surface: f64,
+    /// bodies per volume \[1/m3\]
+    density: f64,
+    /// part of the volume that bodies fill
+    eta: f64,
 }
 
 /// Radius times n.
@@ -63,6 +75,14 @@ impl GasSpec {
             GasShape::Spheres => Arc::new(Sphere::new(self.radius())?),
             GasShape::Tetrahedra => Arc::new(Polyhedron::tetrahedron(self.radius())?),
         };
+        for (position, velocity) in self.start() {
+            world.add_body(BodyDef { position, velocity, ..BodyDef::new(shape.clone()) })?;
+        }
+        Ok(world)
+    }
+
+    /// Positions \[m\] and velocities \[m/s\] at the start, in the order of the bodies' numbers.
+    pub fn start(&self) -> Vec<(Vec3, Vec3)> {
         let mut random = Random(0x6d72_7470_6879_7321);
         let mut places: Vec<u32> = (0..self.n.pow(3)).collect();
         for i in (1..places.len()).rev() {
@@ -70,17 +90,51 @@ impl GasSpec {
         }
         let cell = 1.0 / f64::from(self.n);
         let free = 0.5 * cell - self.radius();
-        for place in places {
+        let place = |place: u32| {
             let at = |k: u32| (f64::from(k % self.n) + 0.5) * cell;
             let lattice = Vec3::new(at(place / (self.n * self.n)), at(place / self.n), at(place));
             let jitter = Vec3::new(random.signed(), random.signed(), random.signed()) * (0.9 * free);
-            world.add_body(BodyDef {
-                position: lattice + jitter,
-                velocity: random.direction(),
-                ..BodyDef::new(shape.clone())
-            })?;
+            (lattice + jitter, random.direction())
+        };
+        places.into_iter().map(place).collect()
+    }
+
+    /// The gas without an engine, for comparisons. Tetrahedra get what the gas that is measured alone lacks: any orientation,
+    /// and as much energy of rotation as of translation.
+    pub fn data(&self) -> SceneData {
+        let mut random = Random(0x6f72_6965_6e74_2121);
+        let r = self.radius();
+        let third = r / 3f64.sqrt();
+        let corners = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+        let shape = match self.shape {
+            GasShape::Spheres => NeutralShape::Sphere { radius: r },
+            GasShape::Tetrahedra => NeutralShape::Hull { points: corners.map(|p| p.map(|x: f64| x * third)).to_vec() },
+        };
+        let body = |(p, v): (Vec3, Vec3)| {
+            let (orientation, spin) = match self.shape {
+                GasShape::Spheres => ([0.0, 0.0, 0.0, 1.0], Vec3::ZERO),
+                // I = m 2/5 s^2, s = r / sqrt 3, about every axis.
+                GasShape::Tetrahedra => (random.orientation(), random.direction() * (1.0 / (third * 0.4f64.sqrt()))),
+            };
+            NeutralBody {
+                shape: 0,
+                fixed: false,
+                position: [p.x, p.y, p.z],
+                orientation,
+                velocity: [v.x, v.y, v.z],
+                spin: [spin.x, spin.y, spin.z],
+            }
+        };
+        SceneData {
+            dt: 1.0 / f64::from(self.rate),
+            unit: 0.5 / f64::from(self.n),
+            restitution: 1.0,
+            friction: 0.0,
+            gravity: [0.0; 3],
+            container: Some(([0.0; 3], [1.0; 3])),
+            shapes: vec![shape],
+            bodies: self.start().into_iter().map(body).collect(),
         }
-        Ok(world)
     }
 
     /// Impacts between bodies per second of a gas of hard spheres, by kinetic theory with the walls to first order in the
@@ -93,6 +147,33 @@ impl GasSpec {
     /// is cut off: the pairs are those of a volume V - A sigma/4 + 2 A rho sigma^4 (0.95 pi/6), the integrals over z.
     pub fn collisions_per_second(&self, mean_square_speed: f64) -> f64 {
         use std::f64::consts::PI;
+        let sigma = 2.0 * self.radius();
+        let Bulk { volume, surface, density, eta } = self.bulk();
+        let g = (1.0 - 0.5 * eta) / (1.0 - eta).powi(3);
+        let w = 4.0 * density * sigma * sigma * g * (PI * mean_square_speed / 3.0).sqrt();
+        let pairs = volume - surface * sigma / 4.0 + 2.0 * surface * density * sigma.powi(4) * 0.95 * PI / 6.0;
+        0.5 * density * w * pairs
+    }
+
+    /// Impacts on the walls per second of the same gas: A rho_w sqrt(kT / 2 pi m), where the density at the wall is
+    /// rho_w = p / kT (contact theorem) with the pressure of Carnahan and Starling (1969).
+    pub fn wall_impacts_per_second(&self, mean_square_speed: f64) -> f64 {
+        let Bulk { surface, density, eta, .. } = self.bulk();
+        let compressibility = (1.0 + eta + eta * eta - eta.powi(3)) / (1.0 - eta).powi(3);
+        surface * density * compressibility * (mean_square_speed / (6.0 * std::f64::consts::PI)).sqrt()
+    }
+
+    /// Steps per second in which a body changes its velocity: impacts with others and with walls, several in a step counted
+    /// once as impacts fall at random.
+    pub fn changes_per_body_second(&self, mean_square_speed: f64) -> f64 {
+        let impacts =
+            2.0 * self.collisions_per_second(mean_square_speed) + self.wall_impacts_per_second(mean_square_speed);
+        let (rate, per_body) = (f64::from(self.rate), impacts / self.bodies() as f64);
+        rate * -(-per_body / rate).exp_m1()
+    }
+
+    fn bulk(&self) -> Bulk {
+        use std::f64::consts::PI;
         let bodies = self.bodies() as f64;
         let sigma = 2.0 * self.radius();
         let edge = 1.0 - sigma;
@@ -101,11 +182,7 @@ impl GasSpec {
         for _ in 0..50 {
             density = bodies / (volume + surface * density * PI / 4.0 * sigma.powi(4));
         }
-        let eta = density * PI / 6.0 * sigma.powi(3);
-        let g = (1.0 - 0.5 * eta) / (1.0 - eta).powi(3);
-        let w = 4.0 * density * sigma * sigma * g * (PI * mean_square_speed / 3.0).sqrt();
-        let pairs = volume - surface * sigma / 4.0 + 2.0 * surface * density * sigma.powi(4) * 0.95 * PI / 6.0;
-        0.5 * density * w * pairs
+        Bulk { volume, surface, density, eta: density * PI / 6.0 * sigma.powi(3) }
     }
 }
 
@@ -128,6 +205,17 @@ impl Random {
     /// Uniform in [-1, 1).
     fn signed(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    /// A turn by any angle about any axis, all turns equally likely: uniform on the unit quaternions.
+    fn orientation(&mut self) -> [f64; 4] {
+        loop {
+            let q = [self.signed(), self.signed(), self.signed(), self.signed()];
+            let square: f64 = q.iter().map(|x| x * x).sum();
+            if (0.01..=1.0).contains(&square) {
+                return q.map(|x| x / square.sqrt());
+            }
+        }
     }
 
     /// Uniform on the unit sphere.

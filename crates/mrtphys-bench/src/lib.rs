@@ -2,9 +2,11 @@
 //! collision rate against kinetic theory, and its state hash.
 
 pub mod command;
+pub mod compare;
 pub mod experiment;
 pub mod gas;
 pub mod measure;
+pub mod peers;
 pub mod table;
 
 pub use gas::{GasShape, GasSpec};

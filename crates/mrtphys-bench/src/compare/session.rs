@@ -1,0 +1,117 @@
+//! One engine with one scene, timed and watched.
+
+use super::check::{self, Masses, Watched};
+use super::overlap::{Overlaps, overlaps};
+use super::stats::{Clock, median};
+use crate::peers::scene::SceneData;
+use crate::peers::{Engine, State};
+
+/// Times of some steps \[s\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Burst {
+    /// median processor time of a step
+    pub median: f64,
+    /// mean processor time of a step
+    pub mean: f64,
+    /// processor time of all steps
+    pub cpu: f64,
+    /// time that went by
+    pub wall: f64,
+}
+
+/// What the bodies are like now.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Truth {
+    /// energy by that at the start
+    pub energy: f64,
+    /// bodies outside
+    pub escaped: usize,
+    /// overlaps
+    pub overlaps: Overlaps,
+}
+
+/// An engine at work.
+pub struct Session {
+    scene: SceneData,
+    engine: Box<dyn Engine>,
+    masses: Masses,
+    energy: f64,
+    state: State,
+    next: State,
+}
+
+impl Session {
+    /// Begins: looks whether the engine has the scene's initial state.
+    ///
+    /// # Errors
+    /// It has another, in words.
+    pub fn new(scene: SceneData, engine: Box<dyn Engine>) -> Result<Session, String> {
+        let mut state = State::default();
+        engine.read(&mut state);
+        check::same_start(&scene, &state)?;
+        let masses = Masses::new(&scene)?;
+        let energy = masses.energy(&state);
+        Ok(Session { scene, engine, masses, energy, state, next: State::default() })
+    }
+
+    /// The engine.
+    pub fn engine(&self) -> &dyn Engine {
+        &*self.engine
+    }
+
+    /// Makes steps and times them: nothing else is done between them.
+    ///
+    /// # Errors
+    /// The engine's.
+    pub fn time(&mut self, steps: u64) -> Result<Burst, String> {
+        let whole = Clock::start()?;
+        let mut times = Vec::with_capacity(steps as usize);
+        for _ in 0..steps {
+            let clock = Clock::start()?;
+            self.engine.step()?;
+            times.push(clock.read().0.as_secs_f64());
+        }
+        let (cpu, wall) = whole.read();
+        let sum: f64 = times.iter().sum();
+        Ok(Burst {
+            median: median(&times).unwrap_or(f64::NAN),
+            mean: sum / times.len() as f64,
+            cpu: cpu.as_secs_f64(),
+            wall: wall.as_secs_f64(),
+        })
+    }
+
+    /// Makes steps.
+    ///
+    /// # Errors
+    /// The engine's.
+    pub fn run(&mut self, steps: u64) -> Result<(), String> {
+        (0..steps).try_for_each(|_| self.engine.step())
+    }
+
+    /// Makes steps and looks at every body before and after each.
+    ///
+    /// # Errors
+    /// The engine's.
+    pub fn watch(&mut self, steps: u64) -> Result<Watched, String> {
+        let mut watched = Watched::default();
+        self.engine.read(&mut self.state);
+        for _ in 0..steps {
+            self.engine.step()?;
+            self.engine.read(&mut self.next);
+            check::watch(&self.scene, &self.state, &self.next, &mut watched);
+            std::mem::swap(&mut self.state, &mut self.next);
+        }
+        Ok(watched)
+    }
+
+    /// Looks at the bodies as they are now.
+    pub fn truth(&mut self) -> Truth {
+        self.engine.read(&mut self.state);
+        Truth {
+            energy: self.masses.energy(&self.state) / self.energy,
+            escaped: check::escaped(&self.scene, &self.state),
+            overlaps: overlaps(&self.scene, &self.state),
+        }
+    }
+}
