@@ -37,9 +37,9 @@ const SCENE: &str = "format = 1
 kind = \"uniform\"
 acceleration = [0, -9.8, 0]
 [[body]]
-shape = { kind = \"sphere\", radius = 0.3 }
+shape = { kind = \"sphere\", radius = 0.05 }
 position = [0, 1, 0]
-velocity = [1, 2, 0]
+velocity = [4, 1, 0]
 [[body]]
 shape = { kind = \"box\", size = [0.4, 0.3, 0.5] }
 position = [0, -1, 0]
@@ -137,6 +137,10 @@ fn a_film_shows_what_the_window_shows() {
     let alone = set.picture(&mut other, &frames, 2, 0.25).unwrap();
     assert!(*alone == window(2, 0, 0.25, 160, take.view.sight), "one world");
     assert!(*alone != window(2, 0, 0.25, 160, Sight::default()), "trails, spheres, and colors are seen");
+    let (mut trails, mut spheres) = (take.view.sight, take.view.sight);
+    trails.set(Layer::Balls, false);
+    spheres.set(Layer::Trails, false);
+    assert!(*alone != window(2, 0, 0.25, 160, trails) && *alone != window(2, 0, 0.25, 160, spheres), "each is seen");
     let both = set.picture(&mut other, &frames, 7, 0.5).unwrap().clone();
     let mut right = drawing::board((160, 90), Theme::Light);
     drawing::put(&mut right, 0, &window(7, 0, 0.5, 79, take.view.sight));
