@@ -41,6 +41,8 @@ pub enum Action {
     Film,
     /// open a section of the panel
     Reveal(&'static str),
+    /// a body was selected in the picture: show its properties, if the panel is shown
+    Selected,
     /// show or hide the panel
     SidePanel,
     /// show or hide the area at the bottom

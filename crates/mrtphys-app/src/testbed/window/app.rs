@@ -247,6 +247,8 @@ impl Testbed {
                 self.side_panel = true;
                 self.panel.reveal(name);
             }
+            Action::Selected if self.side_panel => self.panel.reveal("body"),
+            Action::Selected => {}
             Action::SidePanel => self.side_panel = !self.side_panel,
             Action::Below => self.below = !self.below,
             Action::ResetCamera => self.desk.camera = self.desk.report().sides[0].shot.stage.camera(),

@@ -1,6 +1,7 @@
 //! The scene window: the picture, and what mouse and keys do in it.
 
 use super::ask::Inquiry;
+use super::action::Action;
 use super::desk::Desk;
 use super::detail::{self, Detail};
 use super::drawing::{self, View};
@@ -226,6 +227,9 @@ impl Viewport {
             self.go_on(ui, desk, (pane, at), response);
             if response.clicked() {
                 desk.selected = self.pick(desk, pane, at).map(|hit| hit.body);
+                if desk.selected.is_some() {
+                    desk.actions.push(Action::Selected);
+                }
             }
             if response.double_clicked()
                 && let Some(hit) = self.pick(desk, pane, at)
