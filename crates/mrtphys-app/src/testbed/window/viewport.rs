@@ -1,7 +1,7 @@
 //! The scene window: the picture, and what mouse and keys do in it.
 
-use super::ask::Inquiry;
 use super::action::Action;
+use super::ask::Inquiry;
 use super::desk::Desk;
 use super::detail::{self, Detail};
 use super::drawing::{self, View};
