@@ -188,7 +188,9 @@ fn scene_row(row: &Row, ours: Option<&Row>) -> Vec<String> {
 /// Near one, the difference from one is what matters.
 fn energy(ratio: f64) -> String {
     let error = ratio - 1.0;
-    if error.abs() < 1e-3 {
+    if error == 0.0 {
+        "1".into()
+    } else if error.abs() < 1e-3 {
         format!("1 {} {:.0e}", if error < 0.0 { '-' } else { '+' }, error.abs())
     } else {
         three(ratio)
@@ -286,6 +288,7 @@ mod tests {
             ["0.0142", "1.23", "102", "15000", "0", "1.00e-5"],
             [0.0142, 1.234, 102.4, 15000.0, 0.0, 1e-5].map(three)
         );
+        assert_eq!(energy(1.0), "1");
         assert_eq!(energy(1.0 - 4e-16), "1 - 4e-16");
         assert_eq!(energy(0.347), "0.347");
     }
