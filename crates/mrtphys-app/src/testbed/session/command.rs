@@ -22,7 +22,7 @@ pub enum Command {
     Step,
     /// go back by one frame and stand still
     Back,
-    /// go to a frame of the recording (its number in [`Timeline`](super::Timeline)) and stand still; running on from there
+    /// go to a frame of the recording (its number in [`Timeline`](super::report::Timeline)) and stand still; running on from there
     /// replaces what came after
     Seek(u64),
     /// begin again with the scene as it was loaded

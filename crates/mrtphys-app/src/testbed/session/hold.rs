@@ -5,7 +5,7 @@
 //!
 //! u' = u - h w^2 (e + h u') - 2 h w u'   =>   u' = (u - h w^2 e) / (1 + w h)^2,
 //!
-//! which shrinks for every h. The impulse that makes the point's velocity u' is K^-1 (u' - u), K = 1/m + [r]x^T J^-1 [r]x
+//! which shrinks for every h. The impulse that makes the point's velocity u' is K^-1 (u' - u), `K = 1/m + [r]x^T J^-1 [r]x`
 //! (the matrix of equation (37)): so the motion is the same for every mass. The spring's frequency follows the frame rate,
 //! so a body arrives after about as many pictures in every scene.
 
@@ -109,7 +109,7 @@ fn shortened(v: Vec3, longest: Real) -> Vec3 {
     if length > longest { v * (longest / length) } else { v }
 }
 
-/// The velocity that an impulse at a point gives the point, times the mass: 1 - m [r]x J^-1 [r]x. A number near 1 for
+/// The velocity that an impulse at a point gives the point, times the mass: `1 - m [r]x J^-1 [r]x`. A number near 1 for
 /// every mass.
 fn point_mobility(body: &Body, arm: Vec3) -> Mat3 {
     let inverse = body.inertia.inverse_world(body.orientation);

@@ -9,9 +9,9 @@ use eframe::egui::{self, Align2, Color32, CornerRadius, FontId, Rect, Ui};
 use mrtphys_view::Legend;
 use std::time::Duration;
 
-/// Distance from the edges [points].
+/// Distance from the edges \[points\].
 const EDGE: f32 = 8.0;
-/// What is below the buttons at the top [points].
+/// What is below the buttons at the top \[points\].
 const BELOW_TOOLS: f32 = 38.0;
 
 /// Text on a plate, so that it can be read on any picture; the plate's rectangle.
