@@ -490,11 +490,3 @@ impl Core {
         self.complain(message.into());
     }
 }
-
-#[cfg(test)]
-impl Core {
-    pub fn look_for_measurement(&mut self) {
-        self.lanes.iter_mut().for_each(|lane| lane.is_seen = false);
-        self.look(false);
-    }
-}

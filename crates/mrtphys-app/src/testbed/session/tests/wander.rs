@@ -1,4 +1,4 @@
-//! Any commands, and what it all costs.
+//! Any commands in any order.
 
 use super::*;
 
@@ -82,58 +82,5 @@ fn wander(seed: u64, commands: usize) {
         }
         known.insert(now, b.hash());
         known.retain(|tick, _| *tick <= report.timeline.last);
-    }
-}
-
-/// Large scenes: `cargo test --release -- --ignored --nocapture session_overhead`.
-#[test]
-#[ignore = "a measurement"]
-fn session_overhead() {
-    for name in ["gas-100k", "thesis/cube-8", "cradle"] {
-        let mut loaded = scene(name).build().unwrap();
-        let frames = if name == "gas-100k" { 12 } else { 300 };
-        (0..3).for_each(|_| loaded.world.frame().unwrap());
-        let start = Instant::now();
-        (0..frames).for_each(|_| loaded.world.frame().unwrap());
-        let bare = start.elapsed() / frames;
-        for mode in [RealTime::Off, RealTime::Forced] {
-            let mut core = Core::new(scene(name).build().unwrap(), Box::new(Instant::now));
-            core.obey(Command::RealTime(mode));
-            core.obey(Command::Frame);
-            while core.work() == Next::Now {}
-            core.report();
-            core.obey(Command::RealTime(RealTime::Off));
-            core.obey(Command::Go(true));
-            let begin = core.position().tick;
-            let start = Instant::now();
-            while core.position().tick < begin + u64::from(frames) {
-                core.work();
-            }
-            let with = start.elapsed() / frames;
-            let start = Instant::now();
-            core.report();
-            let report = start.elapsed();
-            let all = Wish {
-                contacts: true,
-                touches: true,
-                impacts: true,
-                velocities: true,
-                boxes: true,
-                cells: true,
-                speeds: true,
-                trail: 9,
-                selected: None,
-            };
-            core.obey(Command::Wish(all));
-            let start = Instant::now();
-            core.report();
-            println!(
-                "{name}: frame {bare:?} bare, {with:?} in a session; report {report:?}, with all wishes {:?}",
-                start.elapsed()
-            );
-            let start = Instant::now();
-            core.look_for_measurement();
-            println!("  a look takes {:?}", start.elapsed());
-        }
     }
 }
