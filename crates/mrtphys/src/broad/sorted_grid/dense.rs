@@ -2,11 +2,12 @@
 //! are dealt out to slabs (runs of consecutive cells), then each slab sorts what it was dealt by cell. Both are stable, so
 //! the order is that of one plain counting sort whatever the blocks and slabs are.
 
-use super::cells::Frame;
+use super::cells::{Frame, cell_of};
 use super::lanes::{self, Points};
-use super::{Found, run};
+use super::survey::{Clear, Seen};
+use super::{Extent, Found, run};
 use crate::bounds::{Aabb, Ball};
-use crate::broad::{BoundsView, Cell};
+use crate::broad::{BoundsView, Candidates, Cell};
 use crate::math::Vec3;
 use crate::par;
 use rayon::prelude::*;
@@ -32,13 +33,17 @@ impl Parts {
     }
 }
 
+/// Bodies looked at and then placed at a time: their bounding spheres stay in the first cache in between.
+const CHUNK: usize = 512;
+
 /// Bodies sorted by cell, x running fastest.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Dense {
     frame: Frame,
-    /// cells along x and along x times y, with a border of empty cells round the box so that no neighbour is out of range
+    /// cells along x and along x times y, with empty cells between the rows and after the last so that no neighbour is out of
+    /// range
     stride: [usize; 2],
-    /// for each cell, the place of its first body; two more at the end
+    /// for each cell, the place of its first body; one more at the end
     start: Vec<u32>,
     /// slots in sorted order
     slots: Vec<u32>,
@@ -53,8 +58,10 @@ pub(super) struct Dense {
 /// A block of bodies, dealt out to slabs.
 #[derive(Clone, Debug, Default)]
 struct Dealt {
-    /// cell of each body, in the order in which they came
-    cell_of: Vec<u32>,
+    /// what was seen of them on the way
+    seen: Seen,
+    /// bodies in the order in which they came
+    came: Vec<Entry>,
     /// bodies, slab by slab; unused where there is one slab
     entries: Vec<Entry>,
     /// where each slab ends in `entries`
@@ -63,42 +70,52 @@ struct Dealt {
 
 /// A body on its way to its cell.
 #[derive(Clone, Copy, Debug, Default)]
-struct Entry {
-    cell: u32,
-    slot: u32,
-    /// see [`Frame::rounded`]
-    point: [f32; 3],
+#[repr(C)]
+pub(super) struct Entry {
+    pub cell: u32,
+    pub slot: u32,
+    /// lower 16 bits of the rounded centre's coordinates, see [`Points`]
+    pub xy: u32,
+    pub z: u32,
 }
 
 /// What dealing reads.
+#[derive(Clone, Copy)]
 struct Dealer<'a> {
-    frame: Frame,
-    stride: [u32; 2],
+    cells: Cells,
     members: Option<&'a [u32]>,
     balls: &'a [Ball],
     /// slabs of `1 << shift` cells
     shift: u32,
     slabs: usize,
-    /// bodies in a block
-    block: usize,
 }
 
-impl Dealer<'_> {
-    #[inline(always)]
-    fn slot(&self, k: usize) -> u32 {
-        self.members.map_or(k as u32, |m| m[k])
+/// What turns a position into a cell's number. Cells count from 1 along x and y and from 0 along z.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cells {
+    frame: Frame,
+    /// lower 32 bits of the coordinates of the cell that would be (0, 0, 0)
+    first: [u32; 3],
+    last: [u32; 3],
+    stride: [u32; 2],
+}
+
+impl Cells {
+    fn new(frame: Frame, stride: [usize; 2]) -> Cells {
+        let [x, y, z] = frame.first.map(|c| c as u32);
+        let [nx, ny, nz] = frame.count.map(|c| c as u32);
+        let first = [x.wrapping_sub(1), y.wrapping_sub(1), z];
+        Cells { frame, first, last: [nx, ny, nz.wrapping_sub(1)], stride: stride.map(|s| s as u32) }
     }
 
+    /// A body outside the frame goes to one of its cells all the same.
     #[inline(always)]
-    fn cell(&self, k: usize) -> u32 {
-        let [x, y, z] = self.frame.inside(self.balls[self.slot(k) as usize].center);
-        x + y * self.stride[0] + z * self.stride[1]
-    }
-
-    #[inline(always)]
-    fn entry(&self, k: usize, cell: u32) -> Entry {
-        let slot = self.slot(k);
-        Entry { cell, slot, point: self.frame.rounded(self.balls[slot as usize].center) }
+    pub fn entry(&self, slot: u32, center: Vec3) -> Entry {
+        let place = self.frame.place(center);
+        let at = |axis: usize| cell_of(place[axis]).wrapping_sub(self.first[axis]).min(self.last[axis]);
+        let cell = at(0) + at(1) * self.stride[0] + at(2) * self.stride[1];
+        let low = |axis: usize| u32::from(place[axis] as u16);
+        Entry { cell, slot, xy: low(0) | low(1) << 16, z: low(2) }
     }
 }
 
@@ -109,27 +126,46 @@ impl Dealt {
         &self.entries[first..self.ends[slab] as usize]
     }
 
-    /// Deals out the bodies of a range.
-    fn deal(&mut self, dealer: &Dealer<'_>, range: Range<usize>) {
-        self.cell_of.clear();
-        self.cell_of.extend(range.clone().map(|k| dealer.cell(k)));
-        if dealer.slabs == 1 {
-            return;
+    /// Places the bodies of a range and deals them out. With `clear` they are surveyed on the way.
+    fn deal(&mut self, dealer: &Dealer<'_>, range: Range<usize>, clear: Option<(&Clear, &BoundsView<'_>)>) {
+        self.came.resize(range.len(), Entry::default());
+        self.seen.clear();
+        for first in range.clone().step_by(CHUNK) {
+            let chunk = first..(first + CHUNK).min(range.end);
+            if let Some((clear, view)) = clear {
+                self.seen.look(clear, chunk.clone(), view);
+            }
+            let came = &mut self.came[chunk.start - range.start..chunk.end - range.start];
+            match dealer.members {
+                None => lanes::place(&dealer.cells, chunk.start as u32, &dealer.balls[chunk], came),
+                Some(members) => {
+                    for (entry, &slot) in came.iter_mut().zip(&members[chunk]) {
+                        *entry = dealer.cells.entry(slot, dealer.balls[slot as usize].center);
+                    }
+                }
+            }
         }
-        self.entries.resize(range.len(), Entry::default());
+        if dealer.slabs > 1 {
+            self.deal_out(dealer);
+        }
+    }
+
+    /// A counting sort by slab.
+    fn deal_out(&mut self, dealer: &Dealer<'_>) {
+        self.entries.resize(self.came.len(), Entry::default());
         self.ends.clear();
         self.ends.resize(dealer.slabs, 0);
-        for &cell in &self.cell_of {
-            self.ends[(cell >> dealer.shift) as usize] += 1;
+        for entry in &self.came {
+            self.ends[(entry.cell >> dealer.shift) as usize] += 1;
         }
         let mut sum = 0;
         for end in &mut self.ends {
             sum += std::mem::replace(end, sum);
         }
         // What was the start of each slab moves on to its end.
-        for (k, &cell) in range.zip(&self.cell_of) {
-            let place = &mut self.ends[(cell >> dealer.shift) as usize];
-            self.entries[*place as usize] = dealer.entry(k, cell);
+        for &entry in &self.came {
+            let place = &mut self.ends[(entry.cell >> dealer.shift) as usize];
+            self.entries[*place as usize] = entry;
             *place += 1;
         }
     }
@@ -143,31 +179,34 @@ struct Slab<'a> {
     start: &'a mut [u32],
     slots: &'a mut [u32],
     cells: &'a mut [u32],
-    points: [&'a mut [f32]; 3],
+    points: [&'a mut [u32]; 2],
 }
 
 impl Slab<'_> {
     /// Counting sort. `start[c]` counts the bodies of cell c; summed up, it is where cell c starts, and moves on as bodies of
     /// cell c find their places, so that at last it is where the next cell starts.
-    fn sort(self, in_cells: impl Iterator<Item = u32>, entries: impl Iterator<Item = Entry>) {
-        let Slab { first_cell, first_place, start, slots, cells, points: [x, y, z] } = self;
+    fn sort<'e>(self, blocks: impl Iterator<Item = &'e [Entry]> + Clone) {
+        let Slab { first_cell, first_place, start, slots, cells, points: [xy, z] } = self;
         // All of one length: one check for all.
         let n = slots.len();
-        let (cells, x, y, z) = (&mut cells[..n], &mut x[..n], &mut y[..n], &mut z[..n]);
+        let (cells, xy, z) = (&mut cells[..n], &mut xy[..n], &mut z[..n]);
         start.fill(0);
-        in_cells.for_each(|cell| start[(cell - first_cell) as usize] += 1);
+        for e in blocks.clone().flatten() {
+            start[(e.cell - first_cell) as usize] += 1;
+        }
         let mut sum = first_place;
         for s in start.iter_mut() {
             sum += std::mem::replace(s, sum);
         }
-        entries.for_each(|e| {
+        for e in blocks.flatten() {
             let place = &mut start[(e.cell - first_cell) as usize];
             let at = (*place - first_place) as usize;
             *place += 1;
             slots[at] = e.slot;
             cells[at] = e.cell;
-            [x[at], y[at], z[at]] = e.point;
-        });
+            xy[at] = e.xy;
+            z[at] = e.z;
+        }
     }
 }
 
@@ -182,41 +221,69 @@ impl Dense {
     }
 
     pub fn rebuild(&mut self, frame: Frame, members: Option<&[u32]>, balls: &[Ball], parts: Parts) {
+        let count = members.map_or(balls.len(), <[u32]>::len);
+        self.resize(frame, count);
+        let dealer = self.dealer(members, balls, parts);
+        let blocks =
+            par::ranges_into(count, parts.block, &mut self.dealt, |range, dealt| dealt.deal(&dealer, range, None));
+        self.sort_slabs(&dealer, blocks);
+    }
+
+    /// Surveys all bodies and sorts them into the cells of a frame that was made before they moved. `None`: they are not in its
+    /// cells; the survey holds all the same.
+    pub fn survey_and_rebuild(
+        &mut self,
+        frame: Frame,
+        view: &BoundsView<'_>,
+        parts: Parts,
+        out: &mut Candidates,
+    ) -> (Option<Extent>, bool) {
+        let (count, clear) = (view.balls.len(), Clear::of(view.boundaries));
+        self.resize(frame, count);
+        let dealer = self.dealer(None, view.balls, parts);
+        let blocks = par::ranges_into(count, parts.block, &mut self.dealt, |range, dealt| {
+            dealt.deal(&dealer, range, Some((&clear, view)));
+        });
+        let extent = Seen::report(self.dealt[..blocks].iter().map(|dealt| &dealt.seen), out);
+        let holds = extent.as_ref().is_some_and(|e| e.count == count && e.is_one_level() && frame.holds(e));
+        if holds {
+            self.sort_slabs(&dealer, blocks);
+        }
+        (extent, holds)
+    }
+
+    fn resize(&mut self, frame: Frame, count: usize) {
         self.frame = frame;
-        let [nx, ny, nz] = frame.count.map(|c| c as usize + 2);
-        self.stride = [nx, nx * ny];
-        let (total, count) = (nx * ny * nz, members.map_or(balls.len(), <[u32]>::len));
-        let cells_per_slab = total.div_ceil((count / parts.slab).max(1)).next_power_of_two();
-        let shift = cells_per_slab.trailing_zeros();
-        let slabs = total.div_ceil(cells_per_slab);
-        let stride = self.stride.map(|s| s as u32);
-        let dealer = Dealer { frame, stride, members, balls, shift, slabs, block: parts.block };
-        let blocks = par::ranges_into(count, parts.block, &mut self.dealt, |range, dealt| dealt.deal(&dealer, range));
-        self.start.resize(total + 2, 0);
+        let [nx, ny, nz] = frame.count.map(|c| c as usize);
+        let row = nx + 1;
+        self.stride = [row, row * (ny + 1)];
+        // The last neighbour of the last cell, and the cell after it.
+        let cells = nz * self.stride[1] + (ny + 1) * row + nx + 2;
+        self.start.resize(cells + 1, 0);
         self.slots.resize(count, 0);
         self.cells.resize(count, 0);
         self.points.resize(count);
         self.start[0] = 0;
-        self.start[total + 1] = count as u32;
-        self.sort_slabs(&dealer, blocks, total);
+    }
+
+    fn dealer<'a>(&self, members: Option<&'a [u32]>, balls: &'a [Ball], parts: Parts) -> Dealer<'a> {
+        let total = self.start.len() - 1;
+        let cells_per_slab = total.div_ceil((self.slots.len() / parts.slab).max(1)).next_power_of_two();
+        let shift = cells_per_slab.trailing_zeros();
+        let slabs = total.div_ceil(cells_per_slab);
+        Dealer { cells: Cells::new(self.frame, self.stride), members, balls, shift, slabs }
     }
 
     /// Sorts every slab, each into its own part of the arrays.
-    fn sort_slabs(&mut self, dealer: &Dealer<'_>, blocks: usize, total: usize) {
+    fn sort_slabs(&mut self, dealer: &Dealer<'_>, blocks: usize) {
         let dealt = &self.dealt[..blocks];
-        let mut start = &mut self.start[1..=total];
-        if dealer.slabs == 1 {
-            let points = self.points.axes();
-            let task =
-                Slab { first_cell: 0, first_place: 0, start, slots: &mut self.slots, cells: &mut self.cells, points };
-            let in_cells = dealt.iter().flat_map(|block| block.cell_of.iter().copied());
-            let entries = dealt.iter().enumerate().flat_map(|(b, block)| {
-                let first = b * dealer.block;
-                block.cell_of.iter().enumerate().map(move |(k, &cell)| dealer.entry(first + k, cell))
-            });
-            return task.sort(in_cells, entries);
-        }
+        let mut start = &mut self.start[1..];
+        let total = start.len();
         let (mut slots, mut cells, mut points) = (&mut self.slots[..], &mut self.cells[..], self.points.axes());
+        if dealer.slabs == 1 {
+            let task = Slab { first_cell: 0, first_place: 0, start, slots, cells, points };
+            return task.sort(dealt.iter().map(|block| &block.came[..]));
+        }
         let (cells_per_slab, mut first_place) = (1 << dealer.shift, 0);
         let of_slab = |slab: usize| {
             let first_cell = slab * cells_per_slab;
@@ -234,8 +301,7 @@ impl Dense {
         };
         let tasks: Vec<Slab<'_>> = (0..dealer.slabs).map(of_slab).collect();
         tasks.into_par_iter().enumerate().for_each(|(slab, task)| {
-            let in_cells = dealt.iter().flat_map(|block| block.of_slab(slab).iter().map(|e| e.cell));
-            task.sort(in_cells, dealt.iter().flat_map(|block| block.of_slab(slab).iter().copied()));
+            task.sort(dealt.iter().map(|block| block.of_slab(slab)));
         });
     }
 
@@ -268,7 +334,7 @@ impl Dense {
             stride: self.stride,
             cells: &self.cells,
             points: &self.points,
-            limit: self.frame.limit(),
+            limit: Frame::limit(),
         };
         let mut near = std::mem::take(&mut found.near);
         near.clear();
@@ -297,29 +363,30 @@ impl Dense {
     pub fn query(&self, slot: u32, view: &BoundsView<'_>, found: &mut Found) {
         let ball = &view.balls[slot as usize];
         let at = self.frame.coordinates(ball.center);
-        let [nx, ny, nz] = self.frame.count;
-        // Bodies of the grid lie in the cells 0..n; one outside by more than a cell meets none of them.
-        if at[0] < -1 || at[1] < -1 || at[2] < -1 || at[0] > nx || at[1] > ny || at[2] > nz {
+        // Cells that hold bodies are 0..n; a body outside by more than a cell meets none of them.
+        let range = |axis: usize| {
+            let (c, n) = (at[axis] - self.frame.first[axis], self.frame.count[axis]);
+            (c - 1).max(0)..(c + 2).min(n)
+        };
+        let (x, y, z) = (range(0), range(1), range(2));
+        if x.is_empty() {
             return;
         }
-        let low = |c: i64| (c - 1).max(0) as usize + 1;
-        let high = |c: i64, n: i64| (c + 1).min(n - 1) as usize + 1;
-        for z in low(at[2])..=high(at[2], nz) {
-            for y in low(at[1])..=high(at[1], ny) {
-                let row = y * self.stride[0] + z * self.stride[1];
-                let from = self.start[row + low(at[0])] as usize;
-                let to = self.start[row + high(at[0], nx) + 1] as usize;
-                run((slot, ball), self.others(from, to, view), view, found);
+        for z in z {
+            for y in y.clone() {
+                let cell = |x: i64| x as usize + 1 + (y as usize + 1) * self.stride[0] + z as usize * self.stride[1];
+                let (from, to) = (self.start[cell(x.start)], self.start[cell(x.end)]);
+                run((slot, ball), self.others(from as usize, to as usize, view), view, found);
             }
         }
     }
 
     pub fn cells(&self, depth: u32, out: &mut Vec<Cell>) {
         let [sx, sxy] = self.stride;
-        for c in 0..self.start.len().saturating_sub(2) {
+        for c in 0..self.start.len().saturating_sub(1) {
             let objects = self.start[c + 1] - self.start[c];
             if objects > 0 {
-                let min = self.frame.corner([(c % sx) as i64 - 1, (c % sxy / sx) as i64 - 1, (c / sxy) as i64 - 1]);
+                let min = self.frame.corner([(c % sx) as i64 - 1, (c % sxy / sx) as i64 - 1, (c / sxy) as i64]);
                 let bounds = Aabb { min, max: min + Vec3::splat(self.frame.edge) };
                 out.push(Cell { bounds, depth, objects });
             }

@@ -37,6 +37,15 @@ pub struct SortedGrid {
     levels: Vec<Level>,
     outputs: Vec<Found>,
     seen: Vec<Seen>,
+    /// what was seen at the last time
+    last: Option<Last>,
+}
+
+/// What tells where bodies will be: that they were there a step before.
+#[derive(Clone, Copy, Debug)]
+struct Last {
+    epoch: u64,
+    extent: Extent,
 }
 
 /// Bodies of similar radius.
@@ -75,8 +84,7 @@ impl BroadPhase for SortedGrid {
     }
 
     fn find(&mut self, view: &BoundsView<'_>, out: &mut Candidates) {
-        let extent = survey::survey(view, &mut self.seen, out);
-        self.build(extent, view);
+        self.sort(view, out);
         for level in 0..self.levels.len() {
             self.scan_level(level, view, out);
             for coarser in 0..level {
@@ -105,10 +113,42 @@ impl BroadPhase for SortedGrid {
 }
 
 impl SortedGrid {
+    /// Surveys all bodies and sorts them into cells: in one pass where they are where they were at the last time.
+    fn sort(&mut self, view: &BoundsView<'_>, out: &mut Candidates) {
+        let extent = match self.foreseen(view) {
+            Some((frame, dense)) => {
+                let (extent, holds) = dense.survey_and_rebuild(frame, view, Parts::of(view.balls.len()), out);
+                if !holds {
+                    self.build(extent, view);
+                }
+                extent
+            }
+            None => {
+                let extent = survey::survey(view, &mut self.seen, out);
+                self.build(extent, view);
+                extent
+            }
+        };
+        self.last = extent.map(|extent| Last { epoch: view.epoch, extent });
+    }
+
+    /// The frame that the bodies will be in if they are where they were, and what they are then sorted in. Cells do not depend on
+    /// the frame where it is anchored, so what is counted does not depend on what was foreseen.
+    fn foreseen(&mut self, view: &BoundsView<'_>) -> Option<(Frame, &mut Dense)> {
+        let extent = self.last.filter(|last| last.epoch == view.epoch && last.extent.count == view.balls.len())?.extent;
+        match &mut self.levels[..] {
+            [Level { members, index: Index::Dense(dense), .. }] if members.is_empty() => {
+                let frame = Frame::new(&extent, None, view.balls);
+                (frame.is_anchored() && frame.cells_within(affordable(extent.count))).then_some((frame, dense))
+            }
+            _ => None,
+        }
+    }
+
     /// Sorts all bodies into levels, coarsest first, and each level into cells.
     fn build(&mut self, extent: Option<Extent>, view: &BoundsView<'_>) {
         let Some(extent) = extent else { return self.levels.clear() };
-        if extent.smallest * LEVEL_RATIO >= extent.largest && extent.count == view.balls.len() {
+        if extent.is_one_level() && extent.count == view.balls.len() {
             self.levels.resize_with(1, Level::default);
             self.levels[0].members.clear();
             self.levels[0].largest = extent.largest;
@@ -187,8 +227,7 @@ impl Index {
 
     fn rebuild(&mut self, extent: &Extent, members: Option<&[u32]>, balls: &[Ball]) {
         let frame = Frame::new(extent, members, balls);
-        let affordable = DENSE_CELLS_MIN.max(DENSE_CELLS_PER_BODY * extent.count);
-        if frame.cells_within(affordable) {
+        if frame.cells_within(affordable(extent.count)) {
             if !matches!(self, Index::Dense(_)) {
                 *self = Index::default();
             }
@@ -204,6 +243,11 @@ impl Index {
             }
         }
     }
+}
+
+/// Cells of which all are kept for so many bodies.
+fn affordable(bodies: usize) -> usize {
+    DENSE_CELLS_MIN.max(DENSE_CELLS_PER_BODY * bodies)
 }
 
 /// Box of the centres and range of the radii of some bodies.
@@ -226,6 +270,11 @@ impl Extent {
     fn between(low: [Real; 4], high: [Real; 4], count: usize) -> Extent {
         let centers = Aabb { min: Vec3::new(low[0], low[1], low[2]), max: Vec3::new(high[0], high[1], high[2]) };
         Extent { centers, smallest: low[3], largest: high[3], count }
+    }
+
+    /// Whether one size of cells is right for all.
+    fn is_one_level(&self) -> bool {
+        self.smallest * LEVEL_RATIO >= self.largest
     }
 
     fn join(&mut self, o: &Extent) {

@@ -2,12 +2,13 @@
 //! bodies are told clear of all of them by one comparison with a box.
 
 use super::super::{BoundsView, Candidates};
-use super::Extent;
+use super::{Extent, lanes};
 use crate::bounds::{Aabb, Ball, BoundaryBounds};
 use crate::math::{Real, Vec3, max, min};
 use crate::par;
+use std::ops::Range;
 
-/// What was seen of a block of bodies.
+/// What was seen of some bodies.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Seen {
     extent: Extent,
@@ -22,37 +23,37 @@ pub(super) struct Seen {
 pub(super) fn survey(view: &BoundsView<'_>, seen: &mut Vec<Seen>, out: &mut Candidates) -> Option<Extent> {
     let clear = Clear::of(view.boundaries);
     let blocks = par::ranges_into(view.balls.len(), par::stream_block(view.balls.len()), seen, |range, seen| {
-        seen.look(&clear, range.start, range.end, view)
+        seen.clear();
+        seen.look(&clear, range, view);
     });
-    let mut extent = Extent::default();
-    for block in &seen[..blocks] {
-        extent.join(&block.extent);
-        out.walls.extend_from_slice(&block.walls);
-        out.sphere_tests += block.tests;
-    }
-    (extent.count > 0).then_some(extent)
+    Seen::report(seen[..blocks].iter(), out)
 }
 
 impl Seen {
-    fn look(&mut self, clear: &Clear, first: usize, last: usize, view: &BoundsView<'_>) {
-        self.near.clear();
+    pub fn clear(&mut self) {
+        self.extent = Extent::default();
         self.walls.clear();
         self.tests = 0;
-        let balls = &view.balls[first..last];
-        // Four numbers a ball, side by side: what processors compare at once.
-        let (mut low, mut high) = ([Real::INFINITY; 4], [Real::NEG_INFINITY; 4]);
-        let near = &mut self.near;
-        for (k, ball) in balls.iter().enumerate() {
-            let four = [ball.center.x, ball.center.y, ball.center.z, ball.radius];
-            for axis in 0..4 {
-                low[axis] = min(low[axis], four[axis]);
-                high[axis] = max(high[axis], four[axis]);
-            }
-            if !clear.holds(ball) {
-                near.push((first + k) as u32);
-            }
+    }
+
+    /// Puts together what was seen of all bodies.
+    pub fn report<'a>(all: impl Iterator<Item = &'a Seen>, out: &mut Candidates) -> Option<Extent> {
+        let mut extent = Extent::default();
+        for some in all {
+            extent.join(&some.extent);
+            out.walls.extend_from_slice(&some.walls);
+            out.sphere_tests += some.tests;
         }
-        self.extent = if low[3] >= 0.0 { Extent::between(low, high, balls.len()) } else { Extent::of(balls) };
+        (extent.count > 0).then_some(extent)
+    }
+
+    /// Looks at some more bodies.
+    pub fn look(&mut self, clear: &Clear, range: Range<usize>, view: &BoundsView<'_>) {
+        self.near.clear();
+        let balls = &view.balls[range.clone()];
+        let (low, high) = lanes::look(clear, balls, range.start as u32, &mut self.near);
+        let extent = if low[3] >= 0.0 { Extent::between(low, high, balls.len()) } else { Extent::of(balls) };
+        self.extent.join(&extent);
         for &slot in &self.near {
             let ball = &view.balls[slot as usize];
             if ball.is_empty() || view.is_fixed(slot) {
@@ -68,6 +69,25 @@ impl Seen {
     }
 }
 
+/// The least and the largest of three coordinates and the radius of some balls. Notes the slots, counted from `first`, of those
+/// that are not told clear of the boundaries.
+#[inline(always)]
+pub(super) fn look_over(clear: &Clear, balls: &[Ball], first: u32, near: &mut Vec<u32>) -> ([Real; 4], [Real; 4]) {
+    // Four numbers a ball, side by side: what processors compare at once.
+    let (mut low, mut high) = ([Real::INFINITY; 4], [Real::NEG_INFINITY; 4]);
+    for (k, ball) in balls.iter().enumerate() {
+        let four = [ball.center.x, ball.center.y, ball.center.z, ball.radius];
+        for axis in 0..4 {
+            low[axis] = min(low[axis], four[axis]);
+            high[axis] = max(high[axis], four[axis]);
+        }
+        if !clear.holds(&four) {
+            near.push(first + k as u32);
+        }
+    }
+    (low, high)
+}
+
 fn reaches(bounds: &BoundaryBounds, ball: &Ball) -> bool {
     match bounds.behind {
         Some(_) => bounds.reaches_behind(ball),
@@ -76,15 +96,17 @@ fn reaches(bounds: &BoundaryBounds, ball: &Ball) -> bool {
 }
 
 /// Where no boundary is reached.
-struct Clear {
-    /// a ball inside of this box reaches no boundary; empty where a boundary is not an axis-parallel half-space
-    bounds: Aabb,
+pub(super) struct Clear {
+    /// a ball inside of this box reaches no boundary; empty where a boundary is not an axis-parallel half-space. The fourth
+    /// axis, that of the radius, is without end
+    min: [Real; 4],
+    max: [Real; 4],
     /// how far inside it must be beyond its radius \[m\]
     allowance: Real,
 }
 
 impl Clear {
-    fn of(boundaries: &[BoundaryBounds]) -> Clear {
+    pub fn of(boundaries: &[BoundaryBounds]) -> Clear {
         let bounds = clear_box(boundaries);
         let size = max(bounds.min.max_abs(), bounds.max.max_abs());
         // Where a side is open, bodies may be anywhere: none is told clear by the box. Without boundaries all are clear.
@@ -93,17 +115,21 @@ impl Clear {
             (false, true) => 64.0 * Real::EPSILON * size,
             (false, false) => Real::INFINITY,
         };
-        Clear { bounds, allowance }
+        let four = |v: Vec3, w: Real| [v.x, v.y, v.z, w];
+        Clear { min: four(bounds.min, Real::NEG_INFINITY), max: four(bounds.max, Real::INFINITY), allowance }
     }
 
+    /// Whether a ball, its centre and its radius, is told clear.
     #[inline(always)]
-    fn holds(&self, ball: &Ball) -> bool {
+    fn holds(&self, ball: &[Real; 4]) -> bool {
         // The same differences as `reaches_behind` makes, and at least its allowance for rounding: inside of the box no
         // coordinate is larger than `size`.
-        let r: Real = ball.radius * (1.0 + 64.0 * Real::EPSILON) + self.allowance;
-        let (to_min, to_max) = (ball.center - self.bounds.min, self.bounds.max - ball.center);
-        let nearest = |a: Vec3| min(min(a.x, a.y), a.z);
-        min(nearest(to_min), nearest(to_max)) > r
+        let r: Real = ball[3] * (1.0 + 64.0 * Real::EPSILON) + self.allowance;
+        let mut clear = true;
+        for axis in 0..4 {
+            clear &= (ball[axis] - self.min[axis] > r) & (self.max[axis] - ball[axis] > r);
+        }
+        clear
     }
 }
 
