@@ -133,34 +133,17 @@ pub(crate) fn rounding_of(body: &Ball, offset: Real) -> Real {
 }
 
 /// Bounding spheres of all bodies, rotation matrices of those that are no spheres, boxes where the broad phase wants them.
-/// Returns the largest speed of any body as a multiple of its own radius, squared \[1/s2\].
+/// Returns the largest speed of any body as a multiple of its own radius, squared \[1/s2\]. What the motion has done on its way is
+/// not done again.
 pub fn place(model: &Model, state: &State, work: &mut Work) -> Real {
-    let lines = &state.lines;
-    // Bits of numbers that are not negative are in order as the numbers are, so threads agree on the largest.
-    let fastest = AtomicU64::new(0);
-    let note = |largest: Real| {
-        fastest.fetch_max(largest.to_bits(), Ordering::Relaxed);
+    let fastest = match work.placed.take() {
+        Some(fastest) => {
+            work.rotations.clear();
+            fastest
+        }
+        None => place_balls(model, state, work),
     };
-    work.balls.resize(lines.len(), Ball::EMPTY);
-    if model.all_spheres {
-        work.rotations.clear();
-        par::for_each_block(&mut work.balls, |first, balls| {
-            let mut largest = 0.0;
-            for (ball, line) in balls.iter_mut().zip(&lines[first..]) {
-                *ball = Ball { center: line.x, radius: line.radius };
-                largest = faster(largest, line);
-            }
-            note(largest);
-        });
-    } else {
-        work.rotations.resize(lines.len(), Mat3::IDENTITY);
-        par::for_each_block2(&mut work.balls, &mut work.rotations, |first, balls, rotations| {
-            note(lines[first..first + balls.len()].iter().fold(0.0, faster));
-            for (i, (ball, rotation)) in balls.iter_mut().zip(rotations).enumerate() {
-                place_one(model, state, first + i, ball, rotation);
-            }
-        });
-    }
+    let lines = &state.lines;
     let wants_boxes = work.broad.as_ref().is_some_and(|b| b.wants_boxes());
     work.boxes.resize(if wants_boxes { lines.len() } else { 0 }, Aabb::EMPTY);
     let rotations = &work.rotations;
@@ -171,12 +154,53 @@ pub fn place(model: &Model, state: &State, work: &mut Work) -> Real {
             *bounding_box = model.body(slot).shape.bounding_box(lines[slot].x, rotation);
         }
     });
-    Real::from_bits(fastest.into_inner())
+    fastest
+}
+
+/// Bounding spheres and rotation matrices.
+fn place_balls(model: &Model, state: &State, work: &mut Work) -> Real {
+    let (lines, fastest) = (&state.lines, Fastest::default());
+    work.balls.resize(lines.len(), Ball::EMPTY);
+    if model.all_spheres {
+        work.rotations.clear();
+        par::for_each_block(&mut work.balls, |first, balls| {
+            let mut largest = 0.0;
+            for (ball, line) in balls.iter_mut().zip(&lines[first..]) {
+                *ball = Ball { center: line.x, radius: line.radius };
+                largest = faster(largest, line);
+            }
+            fastest.note(largest);
+        });
+    } else {
+        work.rotations.resize(lines.len(), Mat3::IDENTITY);
+        par::for_each_block2(&mut work.balls, &mut work.rotations, |first, balls, rotations| {
+            fastest.note(lines[first..first + balls.len()].iter().fold(0.0, faster));
+            for (i, (ball, rotation)) in balls.iter_mut().zip(rotations).enumerate() {
+                place_one(model, state, first + i, ball, rotation);
+            }
+        });
+    }
+    fastest.get()
+}
+
+/// The largest of some numbers that are not negative, found by any number of threads: the bits of such numbers are in order as
+/// the numbers are.
+#[derive(Default)]
+pub(crate) struct Fastest(AtomicU64);
+
+impl Fastest {
+    pub fn note(&self, largest: Real) {
+        self.0.fetch_max(largest.to_bits(), Ordering::Relaxed);
+    }
+
+    pub fn get(self) -> Real {
+        Real::from_bits(self.0.into_inner())
+    }
 }
 
 /// The larger of this and the square of the body's speed over its radius \[1/s2\].
 #[inline(always)]
-fn faster(largest: Real, line: &Line) -> Real {
+pub(crate) fn faster(largest: Real, line: &Line) -> Real {
     let (v2, r2) = (line.v.length_squared(), line.radius * line.radius);
     if v2 > largest * r2 { v2 / r2 } else { largest }
 }

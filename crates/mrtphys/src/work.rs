@@ -7,7 +7,7 @@ use crate::contact::collect::{Block, ContactPlace};
 use crate::counters::Counters;
 use crate::event::StepEvent;
 use crate::impact::parts::Parts;
-use crate::math::{Mat3, Vec3};
+use crate::math::{Mat3, Real, Vec3};
 use crate::state::{Line, Spin};
 use std::time::Duration;
 
@@ -18,6 +18,9 @@ pub struct Work {
     pub accelerations: Vec<Vec3>,
     /// no body has spin, and none has been given any since that was seen
     pub nothing_spins: bool,
+    /// what [`place`](crate::bounds::place) would return, where the motion has found `balls` on its way and nothing has changed
+    /// since
+    pub placed: Option<Real>,
     /// rotation matrix of each body, by slot; empty where every body is a sphere
     pub rotations: Vec<Mat3>,
     /// bounding spheres in place

@@ -7,6 +7,7 @@
 use super::rotation::rotate_free;
 use super::translation::{Drag, Moved, explicit_euler, parabola, semi_implicit_euler};
 use super::varying;
+use crate::bounds::{Ball, Fastest, faster};
 use crate::counters::Counters;
 use crate::def::Integrator;
 use crate::error::Result;
@@ -40,6 +41,7 @@ pub fn advance(
     ledger: &mut Ledger,
     counters: &mut Counters,
 ) -> Result<()> {
+    work.placed = None;
     if dt == 0.0 || state.lines.is_empty() {
         work.accelerations.clear();
         return Ok(());
@@ -60,12 +62,17 @@ pub fn advance(
     let Some((accelerations, flow)) = uniform else {
         return varying::translate(model, state, work, &drag, ledger, counters);
     };
-    let lost = if no_force && drag.is_void() {
+    let lost = if no_force && drag.is_void() && model.all_spheres {
+        drift_and_place(&mut state.lines, work, dt)
+    } else if no_force && drag.is_void() {
         drift(&mut state.lines, dt)
     } else {
         fall(model, &mut state.lines, &accelerations, flow, &drag, ledger)
     };
-    set_aside(model, state, &lost, ledger, counters);
+    if !lost.is_empty() {
+        work.placed = None;
+        set_aside(model, state, &lost, ledger, counters);
+    }
     if no_force {
         work.accelerations.clear();
         return Ok(());
@@ -93,20 +100,42 @@ fn drift(lines: &mut [Line], dt: Real) -> Vec<u32> {
     let lost = Lost::default();
     for_each_block(lines, |first, block| {
         for (i, line) in block.iter_mut().enumerate() {
-            if !moves(line) {
-                continue;
-            }
-            let x = line.x + line.v * dt;
-            // Nearly always one comparison is enough: where the sum is small so is each, and a velocity that is not finite
-            // leads to a place that is not.
-            if x.x.abs() + x.y.abs() + x.z.abs() <= FARTHEST || is_fine(x, line.v) {
-                line.x = x;
-            } else {
-                lost.add(first + i);
-            }
+            drift_one(line, dt, || lost.add(first + i));
         }
     });
     lost.slots()
+}
+
+/// The same for spheres, which are all their bounds: those are found on the way, while each body is at hand.
+fn drift_and_place(lines: &mut [Line], work: &mut Work, dt: Real) -> Vec<u32> {
+    let (lost, fastest) = (Lost::default(), Fastest::default());
+    work.balls.resize(lines.len(), Ball::EMPTY);
+    for_each_block2(lines, &mut work.balls, |first, lines, balls| {
+        let mut largest = 0.0;
+        for (i, (line, ball)) in lines.iter_mut().zip(balls).enumerate() {
+            drift_one(line, dt, || lost.add(first + i));
+            *ball = Ball { center: line.x, radius: line.radius };
+            largest = faster(largest, line);
+        }
+        fastest.note(largest);
+    });
+    work.placed = Some(fastest.get());
+    lost.slots()
+}
+
+#[inline(always)]
+fn drift_one(line: &mut Line, dt: Real, lost: impl FnOnce()) {
+    if !moves(line) {
+        return;
+    }
+    let x = line.x + line.v * dt;
+    // Nearly always one comparison is enough: where the sum is small so is each, and a velocity that is not finite leads to a
+    // place that is not.
+    if x.x.abs() + x.y.abs() + x.z.abs() <= FARTHEST || is_fine(x, line.v) {
+        line.x = x;
+    } else {
+        lost();
+    }
 }
 
 /// Slots of bodies that cannot go on, gathered from all blocks.

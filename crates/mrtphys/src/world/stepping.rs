@@ -11,8 +11,8 @@ use crate::math::Real;
 use crate::step::{self, Recipe};
 use rayon::prelude::*;
 
-/// Scenes with fewer bodies stay in the cache in any order.
-const SORT_FROM: usize = 30_000;
+/// Scenes with fewer bodies stay in the first cache in any order.
+const SORT_FROM: usize = 2000;
 /// Steps after which storage has lost its order so far that sorting it again pays.
 const SORT_EVERY: u64 = 16;
 
