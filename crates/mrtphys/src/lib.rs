@@ -34,6 +34,7 @@
 #![warn(missing_docs)]
 
 // The face: create, step, query, snapshot.
+mod cache;
 pub mod world;
 pub mod def;
 pub mod id;

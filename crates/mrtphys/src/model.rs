@@ -163,6 +163,8 @@ pub struct Model {
     pub flows: Vec<PlacedFlow>,
     /// whether every body is a sphere centred on its mass: no rotation matrices are needed for bounds
     pub all_spheres: bool,
+    /// whether every body is without friction and elastic
+    pub all_smooth: bool,
     /// whether the pair table answers two spheres with the routine of spheres, and not one of the user's
     pub spheres_meet_as_spheres: bool,
     /// grows whenever bodies or boundaries are added, removed, re-ordered or moved by hand

@@ -2,11 +2,10 @@
 
 use crate::bounds::{Aabb, Ball};
 use crate::broad::{BroadPhase, Candidates};
-use crate::contact::ContactList;
-use crate::contact::collect::{Block, ContactPlace};
+use crate::contact::found::FoundContacts;
 use crate::counters::Counters;
 use crate::event::StepEvent;
-use crate::impact::parts::Parts;
+use crate::impact::bounces::Bounces;
 use crate::math::{Mat3, Real, Vec3};
 use crate::state::{Line, Spin};
 use std::time::Duration;
@@ -31,16 +30,10 @@ pub struct Work {
     pub broad: Option<Box<dyn BroadPhase>>,
     /// candidate pairs
     pub candidates: Candidates,
-    /// where blocks of candidates write their contacts
-    pub blocks: Vec<Block>,
-    /// the same for candidates of a boundary
-    pub wall_blocks: Vec<Block>,
-    /// where contacts are before they are in order
-    pub places: Vec<ContactPlace>,
-    /// memory for answering contacts in parts of the storage
-    pub parts: Parts,
     /// contacts of the step
-    pub contacts: ContactList,
+    pub contacts: FoundContacts,
+    /// memory for answering smooth elastic contacts
+    pub bounces: Bounces,
     /// impacts of the step, where they are recorded
     pub events: Vec<StepEvent>,
     /// how far each body was pushed out of overlaps in this step \[m\]; empty until the first push

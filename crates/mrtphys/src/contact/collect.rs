@@ -1,32 +1,27 @@
-//! Stages 3 to 5: from bounds to candidates, from candidates to contacts, and into the order of response.
+//! Stages 3 and 4: from bounds to candidates, from candidates to contacts.
 
+use super::found::Block;
 use super::let_back::{LetBack, Standing};
 use super::memory::{pair_key, wall_key};
-use super::{Contact, ContactList, Other};
+use super::{Contact, Other};
 use crate::bounds::Ball;
 use crate::broad::BoundsView;
+use crate::cache::prefetch;
 use crate::def::ContactMode;
 use crate::math::{Mat3, Vec3};
 use crate::model::Model;
+use crate::narrow::Placed;
 use crate::narrow::pairs::sphere_sphere;
-use crate::narrow::{Placed, Touches};
 use crate::par;
 use crate::shape::LimitPlane;
 use crate::state::State;
 use crate::work::Work;
-use rayon::prelude::*;
 
 /// Candidates in a block of the narrow phase.
 const BLOCK: usize = 512;
 
-/// Contacts of one block of candidates.
-#[derive(Clone, Debug, Default)]
-pub struct Block {
-    contacts: Vec<Contact>,
-    touches: Touches,
-    /// first of its manifold points among those of all blocks
-    first_point: u32,
-}
+/// Pairs by which bodies are asked for ahead.
+const AHEAD: usize = 12;
 
 /// Asks the broad phase.
 pub fn find_candidates(model: &Model, work: &mut Work) {
@@ -45,7 +40,7 @@ pub fn find_candidates(model: &Model, work: &mut Work) {
     work.counters.detect_calls += (work.candidates.pairs.len() + work.candidates.walls.len()) as u64;
 }
 
-/// Asks the pair routines and sorts their contacts into the order of response.
+/// Asks the pair routines.
 pub fn collect(model: &Model, state: &State, let_back: &mut LetBack, work: &mut Work) {
     settle_planes(model, state, let_back);
     let scene = Scene {
@@ -57,63 +52,22 @@ pub fn collect(model: &Model, state: &State, let_back: &mut LetBack, work: &mut 
         mode: model.settings.contact,
         only_spheres: model.all_spheres && model.spheres_meet_as_spheres,
     };
-    let pairs = par::blocks_into(&work.candidates.pairs, BLOCK, &mut work.blocks, |pairs, block| {
+    let pairs = par::blocks_into(&work.candidates.pairs, BLOCK, &mut work.contacts.pairs.0, |pairs, block| {
         block.clear();
-        pairs.iter().for_each(|&[i, j]| scene.touch_pair(i, j, block));
+        for (k, &[i, j]) in pairs.iter().enumerate() {
+            if let Some(&next) = pairs.get(k + AHEAD) {
+                scene.prefetch(next);
+            }
+            scene.touch_pair(i, j, block);
+        }
     });
-    let walls = par::blocks_into(&work.candidates.walls, BLOCK, &mut work.wall_blocks, |walls, block| {
+    let walls = par::blocks_into(&work.candidates.walls, BLOCK, &mut work.contacts.walls.0, |walls, block| {
         block.clear();
         walls.iter().for_each(|&[body, wall]| scene.touch_wall(body, wall, block));
     });
-    put_in_order(&mut work.contacts, &mut work.places, [&mut work.blocks[..pairs], &mut work.wall_blocks[..walls]]);
-    work.counters.contacts += work.contacts.list.len() as u64;
-}
-
-/// Contacts from which several threads put them in order.
-const MANY: usize = 1024;
-
-/// Where a contact is before they are in order: its key, its block and its place there, from the highest bit down. What is
-/// sorted are these few bytes. Contacts of one pair are in one block, so they keep the order in which their routine reported
-/// them.
-pub type ContactPlace = u128;
-
-/// Puts the contacts of all blocks together in the order of response.
-fn put_in_order(contacts: &mut ContactList, places: &mut Vec<ContactPlace>, blocks: [&mut [Block]; 2]) {
-    contacts.points.clear();
-    places.clear();
-    let blocks = blocks.map(|some| {
-        for block in some.iter_mut() {
-            block.first_point = contacts.points.len() as u32;
-            contacts.points.append(&mut block.touches.points);
-        }
-        &*some
-    });
-    let all = || blocks[0].iter().chain(blocks[1]);
-    let count = all().map(|block| block.contacts.len()).sum();
-    places.resize(count, 0);
-    let mut rest = &mut places[..];
-    let pieces = all().map(|block| par::cut(&mut rest, block.contacts.len()));
-    let note = |(k, (block, piece)): (usize, (&Block, &mut [ContactPlace]))| {
-        for (i, (contact, place)) in block.contacts.iter().zip(piece).enumerate() {
-            *place = u128::from(contact.key) << 64 | (k as u128) << 32 | i as u128;
-        }
-    };
-    let at = |&place: &ContactPlace| {
-        let (k, walls) = ((place >> 32) as u32 as usize, blocks[0].len());
-        let block = if k < walls { &blocks[0][k] } else { &blocks[1][k - walls] };
-        let contact = block.contacts[place as u32 as usize];
-        Contact { first_point: contact.first_point + block.first_point, ..contact }
-    };
-    if count < MANY {
-        all().zip(pieces).enumerate().for_each(note);
-        places.sort_unstable();
-        contacts.list.clear();
-        contacts.list.extend(places.iter().map(at));
-    } else {
-        all().zip(pieces).enumerate().collect::<Vec<_>>().into_par_iter().for_each(note);
-        places.par_sort_unstable();
-        places.par_iter().with_min_len(BLOCK).map(at).collect_into_vec(&mut contacts.list);
-    }
+    (work.contacts.pairs.1, work.contacts.walls.1) = (pairs, walls);
+    work.contacts.renew();
+    work.counters.contacts += work.contacts.count() as u64;
 }
 
 /// Two-sided planes must know on which side each body is at home: called before a body first moves, and after every motion.
@@ -128,13 +82,6 @@ pub fn settle_planes(model: &Model, state: &State, let_back: &mut LetBack) {
             let standing = Standing::of(boundary.position, plane.normal(), &ball, line.v);
             let_back.settle(index as u32, serial, &standing);
         }
-    }
-}
-
-impl Block {
-    fn clear(&mut self) {
-        self.contacts.clear();
-        self.touches.clear();
     }
 }
 
@@ -159,6 +106,15 @@ impl Scene<'_> {
             rotation: self.rotations.get(i).unwrap_or(&Mat3::IDENTITY),
             ball: self.balls[i],
             home_side: 0.0,
+        }
+    }
+
+    /// Asks for what [`touch_pair`](Scene::touch_pair) will read.
+    #[inline]
+    fn prefetch(&self, pair: [u32; 2]) {
+        for slot in pair {
+            prefetch(&self.balls[slot as usize]);
+            prefetch(&self.model.serial[slot as usize]);
         }
     }
 

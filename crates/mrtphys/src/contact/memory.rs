@@ -3,6 +3,7 @@
 
 use super::Contact;
 use crate::def::ContactMode;
+use std::sync::OnceLock;
 
 /// Marks the keys of boundaries, which come after the pairs.
 const WALLS_LAST: u64 = 1 << 63;
@@ -33,37 +34,52 @@ fn parties(key: u64, mode: ContactMode) -> [Option<u32>; 2] {
     [Some(number(key >> 32)), of_pair.then(|| number(key))]
 }
 
-/// Keys of the pairs that were in contact, ascending.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// Keys of the pairs that were in contact. They are put in order when somebody asks: where nothing rubs nobody does.
+#[derive(Clone, Debug, Default)]
 pub struct ContactMemory {
-    keys: Vec<u64>,
+    /// as they were found
+    found: Vec<u64>,
+    /// in order, each once
+    keys: OnceLock<Vec<u64>>,
+}
+
+impl PartialEq for ContactMemory {
+    fn eq(&self, o: &ContactMemory) -> bool {
+        self.keys() == o.keys()
+    }
 }
 
 impl ContactMemory {
     /// Whether the pair was in contact in the last step.
     pub fn holds(&self, key: u64) -> bool {
-        self.keys.binary_search(&key).is_ok()
+        self.keys().binary_search(&key).is_ok()
     }
 
-    /// Remembers the pairs of these contacts, which are in order of their keys.
-    pub fn remember(&mut self, contacts: &[Contact]) {
-        self.keys.clear();
-        self.keys.extend(contacts.iter().map(|c| c.key));
-        self.keys.dedup();
+    /// Remembers the pairs of these contacts, in any order.
+    pub fn remember<'a>(&mut self, contacts: impl Iterator<Item = &'a Contact>) {
+        self.keys.take();
+        self.found.clear();
+        self.found.extend(contacts.map(|c| c.key));
     }
 
     /// Forgets every pair of a body.
     pub fn forget(&mut self, serial: u32, mode: ContactMode) {
-        self.keys.retain(|&key| parties(key, mode).into_iter().all(|party| party != Some(serial)));
+        self.keys.take();
+        self.found.retain(|&key| parties(key, mode).into_iter().all(|party| party != Some(serial)));
     }
 
     /// The keys, ascending.
     pub fn keys(&self) -> &[u64] {
-        &self.keys
+        self.keys.get_or_init(|| {
+            let mut keys = self.found.clone();
+            keys.sort_unstable();
+            keys.dedup();
+            keys
+        })
     }
 
     /// From keys as [`keys`](ContactMemory::keys) gave them.
     pub fn from_keys(keys: Vec<u64>) -> ContactMemory {
-        ContactMemory { keys }
+        ContactMemory { found: keys, keys: OnceLock::new() }
     }
 }

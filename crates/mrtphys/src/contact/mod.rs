@@ -3,6 +3,7 @@
 pub mod memory;
 pub mod let_back;
 pub mod collect;
+pub mod found;
 pub mod project;
 
 use crate::math::{Real, Vec3};

@@ -23,6 +23,7 @@ pub(crate) fn project(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, l
     let mut pairs = PairSurfaces::new(model);
     let stuck: Vec<Contact> = work
         .contacts
+        .ordered()
         .list
         .iter()
         .filter(|c| c.depth > 0.0 && pairs.of(c).restitution < 1.0 && is_stuck(recipe, state, c))

@@ -31,22 +31,16 @@ pub(crate) fn answer(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, le
 
 /// One contact after the other; whether it approaches is asked when its turn comes.
 fn answer_in_order(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, ledger: &mut Ledger) {
-    let contacts = std::mem::take(&mut work.contacts);
+    if super::bounces::is_all(recipe) {
+        return work.bounces.answer(&mut state.lines, work.contacts.blocks(), &mut work.counters);
+    }
+    let contacts = work.contacts.take_ordered();
     let mut pairs = PairSurfaces::new(recipe.model);
-    if super::parts::is_worth_it(recipe, state, &contacts.list) {
-        let mut parts = std::mem::take(&mut work.parts);
-        for &left in parts.answer(recipe, state, &contacts.list, &mut work.counters) {
-            let contact = &contacts.list[left as usize];
-            answer_one(recipe, state, work, ledger, (contact, &contacts.points), &mut pairs);
-        }
-        work.parts = parts;
-    } else {
-        for contact in &contacts.list {
-            answer_one(recipe, state, work, ledger, (contact, &contacts.points), &mut pairs);
-        }
+    for contact in &contacts.list {
+        answer_one(recipe, state, work, ledger, (contact, &contacts.points), &mut pairs);
     }
     settle_piles(recipe, state, work, ledger, &contacts, &mut pairs);
-    work.contacts = contacts;
+    work.contacts.give_back(contacts);
 }
 
 /// What presses on an inelastic contact comes through its neighbours, which may be answered after it: its pair is asked

@@ -14,7 +14,7 @@ use crate::work::Work;
 /// Answers the contacts of the step group by group. A group with a single contact point is answered by the impact law like
 /// any other impact; a larger one by generalized reflections, which are frictionless.
 pub(super) fn answer_in_groups(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, ledger: &mut Ledger) {
-    let contacts = std::mem::take(&mut work.contacts);
+    let contacts = work.contacts.take_ordered();
     let mut pairs = PairSurfaces::new(recipe.model);
     for group in groups(recipe, state, &contacts.list) {
         let points: usize = group.iter().map(|&c| manifold(&contacts.list[c], &contacts.points).len()).sum();
@@ -26,7 +26,7 @@ pub(super) fn answer_in_groups(recipe: &Recipe<'_>, state: &mut State, work: &mu
             reflect_group(recipe, state, work, ledger, (&chosen, &contacts.points), &mut pairs);
         }
     }
-    work.contacts = contacts;
+    work.contacts.give_back(contacts);
 }
 
 /// Contacts by group, groups and contacts in order of response. Fixed bodies and boundaries connect nothing.

@@ -11,7 +11,7 @@ pub mod coulomb;
 pub mod sequential;
 pub mod reflection;
 pub(crate) mod answer;
-pub(crate) mod parts;
+pub(crate) mod bounces;
 pub(crate) mod groups;
 mod area;
 mod delassus;

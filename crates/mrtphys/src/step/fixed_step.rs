@@ -35,7 +35,8 @@ pub(crate) fn step(recipe: &Recipe<'_>, state: &mut State, work: &mut Work, book
     work.stages.impact = watch.lap();
     project::project(recipe, state, work, &mut books.ledger);
     // A law without memory leaves none: what was in contact long ago is news when another law asks again.
-    state.contacts.remember(if recipe.law.needs_contact_memory() { &work.contacts.list } else { &[] });
+    let remembered = recipe.law.needs_contact_memory();
+    state.contacts.remember(work.contacts.blocks().take_while(|_| remembered).flatten());
     work.stages.projection = watch.lap();
     Ok(())
 }

@@ -434,6 +434,7 @@ impl World {
         if self.model.types.len() > 2 * self.model.type_of.len() + LOOK_BACK {
             self.drop_unused_types();
         }
+        self.model.all_smooth &= kind_of.surface.friction == 0.0 && kind_of.surface.restitution == 1.0;
         self.model.types.push(kind_of);
         (self.model.types.len() - 1) as u32
     }

@@ -114,6 +114,7 @@ impl World {
             forces: Vec::new(),
             flows: Vec::new(),
             all_spheres: true,
+            all_smooth: true,
             spheres_meet_as_spheres: kinds.has_plain_spheres(),
             epoch: 0,
         };
@@ -225,9 +226,10 @@ impl World {
         self.events.drain(..)
     }
 
-    /// Contacts of the last step, for drawing.
+    /// Contacts of the last step in the order of response, for drawing. They are put in order when first asked for, where the
+    /// step itself had no need of it.
     pub fn contacts(&self) -> &crate::contact::ContactList {
-        &self.work.contacts
+        self.work.contacts.ordered()
     }
 
     /// The body in a slot, as [`contacts`](World::contacts) names bodies: valid until bodies come or go or are sorted.

@@ -130,7 +130,7 @@ impl World {
         let mut let_back = self.state.let_back.clone();
         collect::collect(&self.model, &self.state, &mut let_back, &mut self.work);
         self.work.counters = counters;
-        let found = self.work.contacts.list.iter().filter(|c| {
+        let found = self.work.contacts.ordered().list.iter().filter(|c| {
             let size = self.state.lines[c.a as usize].radius.abs() + self.state.lines[c.a as usize].x.max_abs();
             c.depth > 64.0 * Real::EPSILON * size
         });

@@ -64,6 +64,7 @@ impl Bodies {
             forces: Vec::new(),
             flows: Vec::new(),
             all_spheres: false,
+            all_smooth: false,
             spheres_meet_as_spheres: true,
             epoch: 0,
         };

@@ -8,6 +8,7 @@ use super::survey::{Clear, Seen};
 use super::{Extent, Found, run};
 use crate::bounds::{Aabb, Ball};
 use crate::broad::{BoundsView, Candidates, Cell};
+use crate::cache::prefetch;
 use crate::math::Vec3;
 use crate::par;
 use rayon::prelude::*;
@@ -35,6 +36,9 @@ impl Parts {
 
 /// Bodies looked at and then placed at a time: their bounding spheres stay in the first cache in between.
 const CHUNK: usize = 512;
+
+/// Pairs by which the exact test asks ahead for their bounding spheres.
+const AHEAD: usize = 16;
 
 /// Bodies sorted by cell, x running fastest.
 #[derive(Clone, Debug, Default)]
@@ -339,7 +343,10 @@ impl Dense {
         let mut near = std::mem::take(&mut found.near);
         near.clear();
         found.tests += lanes::scan(&grid, first, last, &mut near);
-        for &[i, k] in &near {
+        for (n, &[i, k]) in near.iter().enumerate() {
+            if let Some(next) = near.get(n + AHEAD) {
+                next.iter().for_each(|&place| prefetch(&view.balls[self.slots[place as usize] as usize]));
+            }
             let (a, b) = (self.slots[i as usize], self.slots[k as usize]);
             if view.balls[a as usize].meets(&view.balls[b as usize]) {
                 found.pairs.push([a, b]);
