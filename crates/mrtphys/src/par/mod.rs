@@ -11,6 +11,11 @@ const STREAM: usize = 2048;
 /// Up to so many items a streaming loop runs on the calling thread, without any hand-over.
 const ALONE: usize = 4096;
 
+/// Whether streaming loops over so many items run on the calling thread.
+pub fn is_alone(count: usize) -> bool {
+    count <= ALONE
+}
+
 /// Items in a block of a streaming loop over so many.
 pub fn stream_block(count: usize) -> usize {
     if count <= ALONE { ALONE } else { STREAM }

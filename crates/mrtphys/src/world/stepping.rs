@@ -8,6 +8,7 @@ use crate::error::{Error, Result};
 use crate::event::{ImpactEvent, Partner};
 use crate::id::BoundaryId;
 use crate::math::Real;
+use crate::par;
 use crate::step::{self, Recipe};
 use rayon::prelude::*;
 
@@ -81,7 +82,15 @@ impl World {
         model.epoch += 1;
     }
 
+    /// A step. It is made within the pool of threads: from outside, every loop would wake its threads anew.
     fn advance_by(&mut self, dt: Real, full: bool) -> Result<()> {
+        if rayon::current_thread_index().is_some() || par::is_alone(self.state.lines.len()) {
+            return self.advance_here(dt, full);
+        }
+        rayon::scope(|_| self.advance_here(dt, full))
+    }
+
+    fn advance_here(&mut self, dt: Real, full: bool) -> Result<()> {
         if self.state.lines.len() >= SORT_FROM && self.state.clock.steps.is_multiple_of(SORT_EVERY) {
             self.sort_storage();
         }
