@@ -35,6 +35,7 @@
 
 // The face: create, step, query, snapshot.
 mod cache;
+mod wide;
 pub mod world;
 pub mod def;
 pub mod id;

@@ -17,6 +17,7 @@ use crate::math::{Real, Vec3};
 use crate::model::Model;
 use crate::par::{for_each_block, for_each_block2};
 use crate::state::{Line, Spin, State};
+use crate::wide::{self, Loop};
 use crate::work::Work;
 use rayon::prelude::*;
 
@@ -111,16 +112,34 @@ fn drift_and_place(lines: &mut [Line], work: &mut Work, dt: Real) -> Vec<u32> {
     let (lost, fastest) = (Lost::default(), Fastest::default());
     work.balls.resize(lines.len(), Ball::EMPTY);
     for_each_block2(lines, &mut work.balls, |first, lines, balls| {
-        let mut largest = 0.0;
-        for (i, (line, ball)) in lines.iter_mut().zip(balls).enumerate() {
-            drift_one(line, dt, || lost.add(first + i));
-            *ball = Ball { center: line.x, radius: line.radius };
-            largest = faster(largest, line);
-        }
-        fastest.note(largest);
+        fastest.note(wide::run(DriftAndPlace { lines, balls, dt, lost: |k| lost.add(first + k) }));
     });
     work.placed = Some(fastest.get());
     lost.slots()
+}
+
+/// The loop of [`drift_and_place`] over a block; it returns the largest of [`faster`].
+struct DriftAndPlace<'a, F> {
+    lines: &'a mut [Line],
+    balls: &'a mut [Ball],
+    dt: Real,
+    /// is told the numbers of those that cannot go on
+    lost: F,
+}
+
+impl<F: Fn(usize)> Loop for DriftAndPlace<'_, F> {
+    type Output = Real;
+
+    #[inline(always)]
+    fn run(self) -> Real {
+        let mut largest = 0.0;
+        for (k, (line, ball)) in self.lines.iter_mut().zip(self.balls).enumerate() {
+            drift_one(line, self.dt, || (self.lost)(k));
+            *ball = Ball { center: line.x, radius: line.radius };
+            largest = faster(largest, line);
+        }
+        largest
+    }
 }
 
 #[inline(always)]

@@ -11,6 +11,7 @@ use crate::broad::{BoundsView, Candidates, Cell};
 use crate::cache::prefetch;
 use crate::math::Vec3;
 use crate::par;
+use crate::wide::{self, Loop};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -75,12 +76,12 @@ struct Dealt {
 /// A body on its way to its cell.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
-pub(super) struct Entry {
-    pub cell: u32,
-    pub slot: u32,
+struct Entry {
+    cell: u32,
+    slot: u32,
     /// lower 16 bits of the rounded centre's coordinates, see [`Points`]
-    pub xy: u32,
-    pub z: u32,
+    xy: u32,
+    z: u32,
 }
 
 /// What dealing reads.
@@ -96,7 +97,7 @@ struct Dealer<'a> {
 
 /// What turns a position into a cell's number. Cells count from 1 along x and y and from 0 along z.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cells {
+struct Cells {
     frame: Frame,
     /// lower 32 bits of the coordinates of the cell that would be (0, 0, 0)
     first: [u32; 3],
@@ -114,12 +115,31 @@ impl Cells {
 
     /// A body outside the frame goes to one of its cells all the same.
     #[inline(always)]
-    pub fn entry(&self, slot: u32, center: Vec3) -> Entry {
+    fn entry(&self, slot: u32, center: Vec3) -> Entry {
         let place = self.frame.place(center);
         let at = |axis: usize| cell_of(place[axis]).wrapping_sub(self.first[axis]).min(self.last[axis]);
         let cell = at(0) + at(1) * self.stride[0] + at(2) * self.stride[1];
         let low = |axis: usize| u32::from(place[axis] as u16);
         Entry { cell, slot, xy: low(0) | low(1) << 16, z: low(2) }
+    }
+}
+
+/// Finds the cells of bodies whose slots are counted from `first`.
+struct PlaceAll<'a> {
+    cells: &'a Cells,
+    first: u32,
+    balls: &'a [Ball],
+    came: &'a mut [Entry],
+}
+
+impl Loop for PlaceAll<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for (k, (entry, ball)) in self.came.iter_mut().zip(self.balls).enumerate() {
+            *entry = self.cells.entry(self.first + k as u32, ball.center);
+        }
     }
 }
 
@@ -141,7 +161,12 @@ impl Dealt {
             }
             let came = &mut self.came[chunk.start - range.start..chunk.end - range.start];
             match dealer.members {
-                None => lanes::place(&dealer.cells, chunk.start as u32, &dealer.balls[chunk], came),
+                None => wide::run(PlaceAll {
+                    cells: &dealer.cells,
+                    first: chunk.start as u32,
+                    balls: &dealer.balls[chunk],
+                    came,
+                }),
                 Some(members) => {
                     for (entry, &slot) in came.iter_mut().zip(&members[chunk]) {
                         *entry = dealer.cells.entry(slot, dealer.balls[slot as usize].center);

@@ -1,64 +1,16 @@
-//! The loops of the dense grid over all bodies, with several numbers at a time: looking at bodies, placing them in cells, and
-//! the pair scan, in which a body is compared with eight places of a run at once. What is compared are rounded centres,
-//! against a distance drawn out so far that every pair that meets passes (see [`Frame::limit`](super::cells::Frame::limit));
-//! the exact test comes after, so lanes decide the speed and no bit of the result.
+//! The pair scan of a dense grid over lanes: a body is compared with eight places of a run at once. What is compared are
+//! rounded centres, against a distance drawn out so far that every pair that meets passes (see
+//! [`Frame::limit`](super::cells::Frame::limit)); the exact test comes after, so lanes decide the speed and no bit of the
+//! result.
 //!
-//! Every loop is written once; AVX2 is chosen at run time where the processor has it. This is the only module of the simulator
-//! with `unsafe` in it.
+//! The kernel is written once; AVX2 is chosen at run time where the processor has it.
 #![allow(unsafe_code)]
 
-use super::dense::{Cells, Entry};
-use super::survey::{Clear, look_over};
-use crate::bounds::Ball;
-use crate::math::Real;
+#[cfg(target_arch = "x86_64")]
+use crate::wide::has_avx2;
 
 /// Places compared at once.
 pub(super) const LANES: usize = 8;
-
-/// Whether the loops for AVX2 can be used. The answer is kept by the standard library.
-#[cfg(target_arch = "x86_64")]
-#[inline(always)]
-fn has_avx2() -> bool {
-    std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("bmi2")
-}
-
-/// Defines a function that runs another, which is written for any processor, compiled for AVX2 where there is AVX2.
-macro_rules! on_lanes {
-    ($(#[$about:meta])* $name:ident = $body:path, ($($argument:ident: $kind:ty),*) $(-> $result:ty)?) => {
-        $(#[$about])*
-        pub(super) fn $name($($argument: $kind),*) $(-> $result)? {
-            #[cfg(target_arch = "x86_64")]
-            {
-                #[target_feature(enable = "avx2,bmi2")]
-                fn with_avx2($($argument: $kind),*) $(-> $result)? {
-                    $body($($argument),*)
-                }
-                if has_avx2() {
-                    // SAFETY: the processor has AVX2 and BMI2.
-                    return unsafe { with_avx2($($argument),*) };
-                }
-            }
-            $body($($argument),*)
-        }
-    };
-}
-
-on_lanes! {
-    /// See [`look_over`].
-    look = look_over, (clear: &Clear, balls: &[Ball], first: u32, near: &mut Vec<u32>) -> ([Real; 4], [Real; 4])
-}
-
-on_lanes! {
-    /// Finds the cells of bodies whose slots are counted from `first`.
-    place = place_all, (cells: &Cells, first: u32, balls: &[Ball], entries: &mut [Entry])
-}
-
-#[inline(always)]
-fn place_all(cells: &Cells, first: u32, balls: &[Ball], entries: &mut [Entry]) {
-    for (k, (entry, ball)) in entries.iter_mut().zip(balls).enumerate() {
-        *entry = cells.entry(first + k as u32, ball.center);
-    }
-}
 
 /// Rounded centres in sorted order, and behind the last of them as many more of no meaning as there are lanes. Of every
 /// coordinate the lower 16 bits are kept: the difference of two that are less than eight cells apart is right.

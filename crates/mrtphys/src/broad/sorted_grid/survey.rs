@@ -2,10 +2,11 @@
 //! bodies are told clear of all of them by one comparison with a box.
 
 use super::super::{BoundsView, Candidates};
-use super::{Extent, lanes};
+use super::Extent;
 use crate::bounds::{Aabb, Ball, BoundaryBounds};
 use crate::math::{Real, Vec3, max, min};
 use crate::par;
+use crate::wide::{self, Loop};
 use std::ops::Range;
 
 /// What was seen of some bodies.
@@ -51,7 +52,7 @@ impl Seen {
     pub fn look(&mut self, clear: &Clear, range: Range<usize>, view: &BoundsView<'_>) {
         self.near.clear();
         let balls = &view.balls[range.clone()];
-        let (low, high) = lanes::look(clear, balls, range.start as u32, &mut self.near);
+        let (low, high) = wide::run(LookOver { clear, balls, first: range.start as u32, near: &mut self.near });
         let extent = if low[3] >= 0.0 { Extent::between(low, high, balls.len()) } else { Extent::of(balls) };
         self.extent.join(&extent);
         for &slot in &self.near {
@@ -69,23 +70,34 @@ impl Seen {
     }
 }
 
-/// The least and the largest of three coordinates and the radius of some balls. Notes the slots, counted from `first`, of those
-/// that are not told clear of the boundaries.
-#[inline(always)]
-pub(super) fn look_over(clear: &Clear, balls: &[Ball], first: u32, near: &mut Vec<u32>) -> ([Real; 4], [Real; 4]) {
-    // Four numbers a ball, side by side: what processors compare at once.
-    let (mut low, mut high) = ([Real::INFINITY; 4], [Real::NEG_INFINITY; 4]);
-    for (k, ball) in balls.iter().enumerate() {
-        let four = [ball.center.x, ball.center.y, ball.center.z, ball.radius];
-        for axis in 0..4 {
-            low[axis] = min(low[axis], four[axis]);
-            high[axis] = max(high[axis], four[axis]);
+/// Finds the least and the largest of three coordinates and the radius of some balls, and notes the slots, counted from `first`,
+/// of those that are not told clear of the boundaries.
+struct LookOver<'a> {
+    clear: &'a Clear,
+    balls: &'a [Ball],
+    first: u32,
+    near: &'a mut Vec<u32>,
+}
+
+impl Loop for LookOver<'_> {
+    type Output = ([Real; 4], [Real; 4]);
+
+    #[inline(always)]
+    fn run(self) -> ([Real; 4], [Real; 4]) {
+        // Four numbers a ball, side by side: what processors compare at once.
+        let (mut low, mut high) = ([Real::INFINITY; 4], [Real::NEG_INFINITY; 4]);
+        for (k, ball) in self.balls.iter().enumerate() {
+            let four = [ball.center.x, ball.center.y, ball.center.z, ball.radius];
+            for axis in 0..4 {
+                low[axis] = min(low[axis], four[axis]);
+                high[axis] = max(high[axis], four[axis]);
+            }
+            if !self.clear.holds(&four) {
+                self.near.push(self.first + k as u32);
+            }
         }
-        if !clear.holds(&four) {
-            near.push(first + k as u32);
-        }
+        (low, high)
     }
-    (low, high)
 }
 
 fn reaches(bounds: &BoundaryBounds, ball: &Ball) -> bool {
