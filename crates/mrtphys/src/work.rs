@@ -17,6 +17,8 @@ pub struct Work {
     pub accelerations: Vec<Vec3>,
     /// no body has spin, and none has been given any since that was seen
     pub nothing_spins: bool,
+    /// bodies were made since the storage was last sorted
+    pub storage_is_new: bool,
     /// what [`place`](crate::bounds::place) would return, where the motion has found `balls` on its way and nothing has changed
     /// since
     pub placed: Option<Real>,

@@ -120,6 +120,7 @@ impl World {
         self.state.lines.push(line);
         self.state.spins.push(spin);
         self.work.nothing_spins = false;
+        self.work.storage_is_new = true;
         self.next_serial = serial + 1;
         let id = self.ids.push(self.tag);
         self.book_created(self.state.lines.len() - 1);

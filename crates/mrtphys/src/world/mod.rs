@@ -280,6 +280,7 @@ impl World {
         self.state = state;
         self.work.nothing_spins = false;
         self.books = books;
+        self.work.storage_is_new = true;
         self.model.epoch += 1;
         Ok(())
     }

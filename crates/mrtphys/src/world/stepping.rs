@@ -80,6 +80,7 @@ impl World {
         permute(&mut model.fixed, &order, &mut spare.flags);
         self.ids.permute(&order);
         model.epoch += 1;
+        self.work.storage_is_new = false;
     }
 
     /// A step. It is made within the pool of threads: from outside, every loop would wake its threads anew.
@@ -91,7 +92,8 @@ impl World {
     }
 
     fn advance_here(&mut self, dt: Real, full: bool) -> Result<()> {
-        if self.state.lines.len() >= SORT_FROM && self.state.clock.steps.is_multiple_of(SORT_EVERY) {
+        let in_disorder = self.work.storage_is_new || self.state.clock.steps.is_multiple_of(SORT_EVERY);
+        if self.state.lines.len() >= SORT_FROM && in_disorder {
             self.sort_storage();
         }
         self.refresh_scopes();
