@@ -17,7 +17,7 @@ use crate::state::Line;
 use crate::step::Recipe;
 use rayon::prelude::*;
 
-/// Bodies from which the storage is cut into parts, twice: the smallest part.
+/// Bodies in a part of the storage at least.
 const SMALLEST_PART: usize = 8192;
 /// Parts of the storage at most. More of them leave more contacts between them.
 const MOST_PARTS: usize = 8;
@@ -95,7 +95,6 @@ impl Bounces {
         blocks: impl Iterator<Item = &'a [Contact]> + Clone,
         counters: &mut Counters,
     ) {
-        // Few bodies, or one thread alone: then parts are of no use.
         let alone = rayon::current_num_threads() == 1 || lines.len() < 2 * SMALLEST_PART;
         let parts = if alone { 1 } else { MOST_PARTS.min(lines.len() / SMALLEST_PART) };
         self.answer_in(lines.len().div_ceil(parts).max(1), lines, blocks, counters);

@@ -1,6 +1,10 @@
 //! Parallel loops whose results do not depend on the number of threads: work is cut into blocks whose size depends on the
 //! scene alone, each block writes its own output, and outputs are put together in the order of the blocks.
 
+mod shared;
+
+pub use shared::as_atomic;
+
 use rayon::prelude::*;
 use std::ops::Range;
 

@@ -1,6 +1,7 @@
-//! All cells of the scene's box, with a counting sort in two stages that any number of threads can share: blocks of bodies
-//! are dealt out to slabs (runs of consecutive cells), then each slab sorts what it was dealt by cell. Both are stable, so
-//! the order is that of one plain counting sort whatever the blocks and slabs are.
+//! All cells of the scene's box, with a counting sort that any number of threads can share: every block of bodies counts how many
+//! of its own are in each cell, sums over cells and blocks give each block its first place in each cell, and there it puts its
+//! bodies. Blocks come in their order within a cell, so the order is that of one plain counting sort whatever the blocks are.
+//! Where the storage is in spatial order, a block is in few of the cells, and counts only those.
 
 use super::cells::{Frame, cell_of};
 use super::lanes::{self, Points};
@@ -14,26 +15,38 @@ use crate::par;
 use crate::wide::{self, Loop};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::atomic::AtomicU32;
+use std::sync::atomic::Ordering::Relaxed;
 
 /// How a sort is cut into parts. The result does not depend on it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parts {
     /// bodies in a block
     pub block: usize,
-    /// bodies in a slab, about
-    pub slab: usize,
+    /// cells of which a block may count for itself; `None`: there is one count for all
+    pub widest: Option<usize>,
 }
 
 impl Parts {
-    /// Parts of so many bodies: small enough for the cache of a core together with their cells, and enough of them for some
-    /// threads; but few bodies make a single slab, which is sorted without being dealt out.
+    /// Parts of so many bodies: a few blocks for each thread. Few bodies and threads alone are faster with one count for all.
     pub fn of(count: usize) -> Parts {
-        const LARGEST: usize = 4096;
-        let few = count < 2 * LARGEST;
-        let size = if few { 2 * LARGEST } else { (count / 32).clamp(LARGEST / 4, LARGEST) };
-        Parts { block: size, slab: size }
+        let threads = rayon::current_num_threads();
+        if threads == 1 || count < FEW {
+            return Parts { block: FEW, widest: None };
+        }
+        let block = (count / (BLOCKS_PER_THREAD * threads)).max(SMALLEST);
+        Parts { block, widest: Some(WIDEST + WIDEST_PER_BODY * block) }
     }
 }
+
+/// Bodies up to which one thread sorts all: several gain nothing.
+const FEW: usize = 8192;
+/// Bodies in a block at least.
+const SMALLEST: usize = 1024;
+const BLOCKS_PER_THREAD: usize = 2;
+/// Cells that a block may count in: so many, and so many for each of its bodies.
+const WIDEST: usize = 1 << 16;
+const WIDEST_PER_BODY: usize = 16;
 
 /// Bodies looked at and then placed at a time: their bounding spheres stay in the first cache in between.
 const CHUNK: usize = 512;
@@ -56,21 +69,25 @@ pub(super) struct Dense {
     cells: Vec<u32>,
     /// centres in sorted order, rounded
     points: Points,
-    /// where blocks of bodies are dealt out to slabs
-    dealt: Vec<Dealt>,
+    /// bodies on their way
+    blocks: Vec<Block>,
 }
 
-/// A block of bodies, dealt out to slabs.
+/// A block of bodies on their way.
 #[derive(Clone, Debug, Default)]
-struct Dealt {
-    /// what was seen of them on the way
+struct Block {
+    /// what was seen of them
     seen: Seen,
     /// bodies in the order in which they came
     came: Vec<Entry>,
-    /// bodies, slab by slab; unused where there is one slab
-    entries: Vec<Entry>,
-    /// where each slab ends in `entries`
-    ends: Vec<u32>,
+    /// the lowest of their cells
+    low: u32,
+    /// for each cell from there on, how many of them are in it; then, the place of the next of them
+    counts: Vec<u32>,
+    /// how many of them are in each range of cells
+    in_range: Vec<u32>,
+    /// they are in too many cells to count by themselves
+    scattered: bool,
 }
 
 /// A body on its way to its cell.
@@ -84,15 +101,14 @@ struct Entry {
     z: u32,
 }
 
-/// What dealing reads.
+/// What placing reads.
 #[derive(Clone, Copy)]
-struct Dealer<'a> {
+struct Placing<'a> {
     cells: Cells,
     members: Option<&'a [u32]>,
     balls: &'a [Ball],
-    /// slabs of `1 << shift` cells
-    shift: u32,
-    slabs: usize,
+    /// where every block counts for itself: cells in a range, and the most that it counts of
+    ranges: Option<(usize, usize)>,
 }
 
 /// What turns a position into a cell's number. Cells count from 1 along x and y and from 0 along z.
@@ -133,108 +149,119 @@ struct PlaceAll<'a> {
 }
 
 impl Loop for PlaceAll<'_> {
-    type Output = ();
+    /// the lowest and the highest of the cells
+    type Output = [u32; 2];
 
     #[inline(always)]
-    fn run(self) {
+    fn run(self) -> [u32; 2] {
+        let [mut low, mut high] = [u32::MAX, 0];
         for (k, (entry, ball)) in self.came.iter_mut().zip(self.balls).enumerate() {
             *entry = self.cells.entry(self.first + k as u32, ball.center);
+            (low, high) = (low.min(entry.cell), high.max(entry.cell));
         }
+        [low, high]
     }
 }
 
-impl Dealt {
-    /// The bodies of a slab.
-    fn of_slab(&self, slab: usize) -> &[Entry] {
-        let first = if slab == 0 { 0 } else { self.ends[slab - 1] as usize };
-        &self.entries[first..self.ends[slab] as usize]
-    }
-
-    /// Places the bodies of a range and deals them out. With `clear` they are surveyed on the way.
-    fn deal(&mut self, dealer: &Dealer<'_>, range: Range<usize>, clear: Option<(&Clear, &BoundsView<'_>)>) {
+impl Block {
+    /// Places the bodies of a range. With `clear` they are surveyed on the way.
+    fn place(&mut self, placing: &Placing<'_>, range: Range<usize>, clear: Option<(&Clear, &BoundsView<'_>)>) {
         self.came.resize(range.len(), Entry::default());
         self.seen.clear();
+        let [mut low, mut high] = [u32::MAX, 0];
         for first in range.clone().step_by(CHUNK) {
             let chunk = first..(first + CHUNK).min(range.end);
             if let Some((clear, view)) = clear {
                 self.seen.look(clear, chunk.clone(), view);
             }
             let came = &mut self.came[chunk.start - range.start..chunk.end - range.start];
-            match dealer.members {
-                None => wide::run(PlaceAll {
-                    cells: &dealer.cells,
-                    first: chunk.start as u32,
-                    balls: &dealer.balls[chunk],
-                    came,
-                }),
+            match placing.members {
+                None => {
+                    let (cells, first) = (&placing.cells, chunk.start as u32);
+                    let ends = wide::run(PlaceAll { cells, first, balls: &placing.balls[chunk], came });
+                    (low, high) = (low.min(ends[0]), high.max(ends[1]));
+                }
                 Some(members) => {
                     for (entry, &slot) in came.iter_mut().zip(&members[chunk]) {
-                        *entry = dealer.cells.entry(slot, dealer.balls[slot as usize].center);
+                        *entry = placing.cells.entry(slot, placing.balls[slot as usize].center);
+                        (low, high) = (low.min(entry.cell), high.max(entry.cell));
                     }
                 }
             }
         }
-        if dealer.slabs > 1 {
-            self.deal_out(dealer);
+        if let Some(ranges) = placing.ranges {
+            self.count(ranges, low.min(high), high);
         }
     }
 
-    /// A counting sort by slab.
-    fn deal_out(&mut self, dealer: &Dealer<'_>) {
-        self.entries.resize(self.came.len(), Entry::default());
-        self.ends.clear();
-        self.ends.resize(dealer.slabs, 0);
-        for entry in &self.came {
-            self.ends[(entry.cell >> dealer.shift) as usize] += 1;
+    /// Counts the bodies in each cell, from the lowest to the highest, and in ranges of so many cells.
+    fn count(&mut self, (range, widest): (usize, usize), low: u32, high: u32) {
+        self.low = low;
+        let width = (high - low + 1) as usize;
+        self.scattered = width > widest;
+        self.counts.clear();
+        self.in_range.clear();
+        if self.scattered {
+            return;
         }
-        let mut sum = 0;
-        for end in &mut self.ends {
-            sum += std::mem::replace(end, sum);
+        self.counts.resize(width, 0);
+        for e in &self.came {
+            self.counts[(e.cell - low) as usize] += 1;
         }
-        // What was the start of each slab moves on to its end.
-        for &entry in &self.came {
-            let place = &mut self.ends[(entry.cell >> dealer.shift) as usize];
-            self.entries[*place as usize] = entry;
-            *place += 1;
+        let mut rest = &self.counts[..];
+        let mut next = low as usize;
+        self.in_range.resize(next / range, 0);
+        while !rest.is_empty() {
+            let (here, after) = rest.split_at((range - next % range).min(rest.len()));
+            self.in_range.push(here.iter().sum());
+            (rest, next) = (after, next + here.len());
         }
     }
-}
 
-/// What a slab writes: its part of everything that is sorted.
-struct Slab<'a> {
-    first_cell: u32,
-    first_place: u32,
-    /// starts of the cells after each of its own
-    start: &'a mut [u32],
-    slots: &'a mut [u32],
-    cells: &'a mut [u32],
-    points: [&'a mut [u32]; 2],
-}
-
-impl Slab<'_> {
-    /// Counting sort. `start[c]` counts the bodies of cell c; summed up, it is where cell c starts, and moves on as bodies of
-    /// cell c find their places, so that at last it is where the next cell starts.
-    fn sort<'e>(self, blocks: impl Iterator<Item = &'e [Entry]> + Clone) {
-        let Slab { first_cell, first_place, start, slots, cells, points: [xy, z] } = self;
+    /// Puts the bodies at their places.
+    fn put(&mut self, [slots, cells, xy, z]: [&[AtomicU32]; 4]) {
         // All of one length: one check for all.
         let n = slots.len();
-        let (cells, xy, z) = (&mut cells[..n], &mut xy[..n], &mut z[..n]);
+        let (cells, xy, z, low) = (&cells[..n], &xy[..n], &z[..n], self.low);
+        for e in &self.came {
+            let next = &mut self.counts[(e.cell - low) as usize];
+            let at = *next as usize;
+            *next += 1;
+            slots[at].store(e.slot, Relaxed);
+            cells[at].store(e.cell, Relaxed);
+            xy[at].store(e.xy, Relaxed);
+            z[at].store(e.z, Relaxed);
+        }
+    }
+}
+
+/// A range of cells and what blocks have counted in it, each from a cell of the range on.
+struct CellRange<'a> {
+    first_place: u32,
+    start: &'a mut [u32],
+    counts: Vec<(usize, &'a mut [u32])>,
+}
+
+impl CellRange<'_> {
+    /// From counts to places: where each cell starts, and in it each block.
+    fn sum_up(self) {
+        let CellRange { first_place, start, mut counts } = self;
         start.fill(0);
-        for e in blocks.clone().flatten() {
-            start[(e.cell - first_cell) as usize] += 1;
+        for (from, counts) in &mut counts {
+            for (sum, count) in start[*from..].iter_mut().zip(counts.iter_mut()) {
+                let before = *sum;
+                *sum += *count;
+                *count = before;
+            }
         }
-        let mut sum = first_place;
-        for s in start.iter_mut() {
-            sum += std::mem::replace(s, sum);
+        let mut place = first_place;
+        for count in start.iter_mut() {
+            place += std::mem::replace(count, place);
         }
-        for e in blocks.flatten() {
-            let place = &mut start[(e.cell - first_cell) as usize];
-            let at = (*place - first_place) as usize;
-            *place += 1;
-            slots[at] = e.slot;
-            cells[at] = e.cell;
-            xy[at] = e.xy;
-            z[at] = e.z;
+        for (from, counts) in counts {
+            for (first, before) in start[from..].iter().zip(counts) {
+                *before += first;
+            }
         }
     }
 }
@@ -252,14 +279,14 @@ impl Dense {
     pub fn rebuild(&mut self, frame: Frame, members: Option<&[u32]>, balls: &[Ball], parts: Parts) {
         let count = members.map_or(balls.len(), <[u32]>::len);
         self.resize(frame, count);
-        let dealer = self.dealer(members, balls, parts);
-        let blocks =
-            par::ranges_into(count, parts.block, &mut self.dealt, |range, dealt| dealt.deal(&dealer, range, None));
-        self.sort_slabs(&dealer, blocks);
+        let placing = self.placing(members, balls, parts);
+        let place = |range: Range<usize>, block: &mut Block| block.place(&placing, range, None);
+        let blocks = par::ranges_into(count, parts.block, &mut self.blocks, place);
+        self.sort(&placing, blocks);
     }
 
-    /// Surveys all bodies and sorts them into the cells of a frame that was made before they moved. `None`: they are not in its
-    /// cells; the survey holds all the same.
+    /// Surveys all bodies and sorts them into the cells of a frame that was made before they moved. Returns their extent, and
+    /// whether they are in its cells; the survey holds in any case.
     pub fn survey_and_rebuild(
         &mut self,
         frame: Frame,
@@ -269,14 +296,13 @@ impl Dense {
     ) -> (Option<Extent>, bool) {
         let (count, clear) = (view.balls.len(), Clear::of(view.boundaries));
         self.resize(frame, count);
-        let dealer = self.dealer(None, view.balls, parts);
-        let blocks = par::ranges_into(count, parts.block, &mut self.dealt, |range, dealt| {
-            dealt.deal(&dealer, range, Some((&clear, view)));
-        });
-        let extent = Seen::report(self.dealt[..blocks].iter().map(|dealt| &dealt.seen), out);
+        let placing = self.placing(None, view.balls, parts);
+        let place = |range: Range<usize>, block: &mut Block| block.place(&placing, range, Some((&clear, view)));
+        let blocks = par::ranges_into(count, parts.block, &mut self.blocks, place);
+        let extent = Seen::report(self.blocks[..blocks].iter().map(|block| &block.seen), out);
         let holds = extent.as_ref().is_some_and(|e| e.count == count && e.is_one_level() && frame.holds(e));
         if holds {
-            self.sort_slabs(&dealer, blocks);
+            self.sort(&placing, blocks);
         }
         (extent, holds)
     }
@@ -295,43 +321,76 @@ impl Dense {
         self.start[0] = 0;
     }
 
-    fn dealer<'a>(&self, members: Option<&'a [u32]>, balls: &'a [Ball], parts: Parts) -> Dealer<'a> {
+    fn placing<'a>(&self, members: Option<&'a [u32]>, balls: &'a [Ball], parts: Parts) -> Placing<'a> {
         let total = self.start.len() - 1;
-        let cells_per_slab = total.div_ceil((self.slots.len() / parts.slab).max(1)).next_power_of_two();
-        let shift = cells_per_slab.trailing_zeros();
-        let slabs = total.div_ceil(cells_per_slab);
-        Dealer { cells: Cells::new(self.frame, self.stride), members, balls, shift, slabs }
+        let ranges = self.slots.len().div_ceil(parts.block).max(1);
+        let ranges = parts.widest.map(|widest| (total.div_ceil(ranges), widest));
+        Placing { cells: Cells::new(self.frame, self.stride), members, balls, ranges }
     }
 
-    /// Sorts every slab, each into its own part of the arrays.
-    fn sort_slabs(&mut self, dealer: &Dealer<'_>, blocks: usize) {
-        let dealt = &self.dealt[..blocks];
-        let mut start = &mut self.start[1..];
-        let total = start.len();
-        let (mut slots, mut cells, mut points) = (&mut self.slots[..], &mut self.cells[..], self.points.axes());
-        if dealer.slabs == 1 {
-            let task = Slab { first_cell: 0, first_place: 0, start, slots, cells, points };
-            return task.sort(dealt.iter().map(|block| &block.came[..]));
+    fn sort(&mut self, placing: &Placing<'_>, blocks: usize) {
+        match placing.ranges {
+            Some((range, _)) if !self.blocks[..blocks].iter().any(|block| block.scattered) => {
+                self.sort_apart(range, blocks)
+            }
+            _ => self.sort_at_once(blocks),
         }
-        let (cells_per_slab, mut first_place) = (1 << dealer.shift, 0);
-        let of_slab = |slab: usize| {
-            let first_cell = slab * cells_per_slab;
-            let count = dealt.iter().map(|block| block.of_slab(slab).len()).sum::<usize>();
-            let task = Slab {
-                first_cell: first_cell as u32,
-                first_place: first_place as u32,
-                start: par::cut(&mut start, cells_per_slab.min(total - first_cell)),
-                slots: par::cut(&mut slots, count),
-                cells: par::cut(&mut cells, count),
-                points: points.each_mut().map(|axis| par::cut(axis, count)),
-            };
-            first_place += count;
-            task
-        };
-        let tasks: Vec<Slab<'_>> = (0..dealer.slabs).map(of_slab).collect();
-        tasks.into_par_iter().enumerate().for_each(|(slab, task)| {
-            task.sort(dealt.iter().map(|block| block.of_slab(slab)));
-        });
+    }
+
+    /// With one count for all. `start[c + 1]` counts the bodies of cell c; summed up, it is where cell c starts, and moves on as
+    /// bodies of cell c find their places, so that at last it is where the next cell starts.
+    fn sort_at_once(&mut self, blocks: usize) {
+        let (blocks, start) = (&self.blocks[..blocks], &mut self.start[1..]);
+        // All of one length: one check for all.
+        let n = self.slots.len();
+        let [xy, z] = self.points.axes();
+        let (slots, cells, xy, z) = (&mut self.slots[..n], &mut self.cells[..n], &mut xy[..n], &mut z[..n]);
+        start.fill(0);
+        for block in blocks {
+            block.came.iter().for_each(|e| start[e.cell as usize] += 1);
+        }
+        let mut sum = 0;
+        for s in start.iter_mut() {
+            sum += std::mem::replace(s, sum);
+        }
+        for e in blocks.iter().flat_map(|block| &block.came) {
+            let place = &mut start[e.cell as usize];
+            let at = *place as usize;
+            *place += 1;
+            slots[at] = e.slot;
+            cells[at] = e.cell;
+            xy[at] = e.xy;
+            z[at] = e.z;
+        }
+    }
+
+    /// With the counts that the blocks have made, in ranges of so many cells.
+    fn sort_apart(&mut self, range: usize, blocks: usize) {
+        let blocks = &mut self.blocks[..blocks];
+        let total = self.start.len() - 1;
+        self.start[total] = self.slots.len() as u32;
+        let mut first_place = 0;
+        let starts = self.start[..total].chunks_mut(range).enumerate();
+        let mut ranges: Vec<CellRange<'_>> = starts
+            .map(|(k, start)| {
+                let task = CellRange { first_place, start, counts: Vec::new() };
+                first_place += blocks.iter().map(|b| b.in_range.get(k).copied().unwrap_or(0)).sum::<u32>();
+                task
+            })
+            .collect();
+        for block in blocks.iter_mut() {
+            let (mut rest, mut next) = (&mut block.counts[..], block.low as usize);
+            while !rest.is_empty() {
+                let length = (range - next % range).min(rest.len());
+                let here = par::cut(&mut rest, length);
+                ranges[next / range].counts.push((next % range, here));
+                next += length;
+            }
+        }
+        ranges.into_par_iter().for_each(CellRange::sum_up);
+        let [xy, z] = self.points.axes();
+        let arrays = [&mut self.slots[..], &mut self.cells[..], xy, z].map(|a| &*par::as_atomic(a));
+        blocks.par_iter_mut().for_each(|block| block.put(arrays));
     }
 
     /// Pairs whose first body is one of the sorted `first..last`: the rest of its cell and the cell after it, and the three

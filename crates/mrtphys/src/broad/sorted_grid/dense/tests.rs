@@ -1,4 +1,4 @@
-//! The sort in slabs against a plain stable sort, and the scan over lanes against the comparison of all with all, for every
+//! The sort in blocks against a plain stable sort, and the scan over lanes against the comparison of all with all, for every
 //! way to cut the work and every number of threads.
 
 use super::*;
@@ -61,7 +61,10 @@ proptest! {
 
     #[test]
     fn any_cut_and_any_number_of_threads_is_one_stable_sort(
-        balls in balls(), block in 1_usize..90, slab in 1_usize..90, every in 1_usize..4,
+        balls in balls(),
+        block in 1_usize..90,
+        widest in prop::option::of(prop_oneof![0_usize..3000, Just(usize::MAX)]),
+        every in 1_usize..4,
     ) {
         let frame = frame(&balls);
         let members: Vec<u32> = (0..balls.len() as u32).step_by(every).collect();
@@ -77,9 +80,9 @@ proptest! {
         // Scratch of an earlier, larger sort is in the way.
         let mut dense = Dense::default();
         let twice: Vec<Ball> = balls.iter().chain(&balls).copied().collect();
-        dense.rebuild(frame, None, &twice, Parts { block: 7, slab: 5 });
+        dense.rebuild(frame, None, &twice, Parts { block: 7, widest: Some(usize::MAX) });
         for threads in [1, 2, 3, 8] {
-            pool(threads).install(|| dense.rebuild(frame, members, &balls, Parts { block, slab }));
+            pool(threads).install(|| dense.rebuild(frame, members, &balls, Parts { block, widest }));
             prop_assert_eq!(&dense.slots, &twin);
             let cells: Vec<u32> = twin.iter().map(|&slot| cell(slot)).collect();
             prop_assert_eq!(&dense.cells, &cells);
@@ -98,7 +101,7 @@ proptest! {
     #[test]
     fn the_scan_finds_what_meets(balls in balls(), block in 1_usize..300) {
         let mut dense = Dense::default();
-        dense.rebuild(frame(&balls), None, &balls, Parts { block: 50, slab: 50 });
+        dense.rebuild(frame(&balls), None, &balls, Parts { block: 50, widest: None });
         let (pairs, tests) = scanned(&dense, &balls, block);
         let mut all = Vec::new();
         for i in 0..balls.len() {
