@@ -121,7 +121,7 @@ const BOTTOM: f64 = 62.0;
 const GAP: f64 = 22.0;
 const LEGEND: f64 = 168.0;
 const LINE: f64 = 16.0;
-const SHADE: &str = "#f1f1ec";
+const SHADE: &str = "#ecece4";
 
 /// The frame of a plot in the picture.
 #[derive(Clone, Copy)]
@@ -206,8 +206,11 @@ impl Ruler {
             (low, high) = (1.0, 10.0);
         }
         match axis.scale {
-            // An eighth of a decade of air at least, so that no marker sits on the frame.
-            Scale::Log => (low, high) = (low / 1.35, high * 1.35),
+            // An eighth of a decade of air at least, more on a long axis, so that no marker sits on the frame.
+            Scale::Log => {
+                let air = (high / low).powf(0.04).max(1.35);
+                (low, high) = (low / air, high * air);
+            }
             Scale::Linear => {
                 let air = if high > low { 0.05 * (high - low) } else { 0.5 * high.abs().max(1.0) };
                 (low, high) = (if low == 0.0 { 0.0 } else { low - air }, high + air);
@@ -233,17 +236,17 @@ impl Ruler {
     }
 }
 
-/// Ticks at powers of ten, minor ones between; over many decades, not every power has a number.
+/// Ticks at powers of ten, minor ones between; over many decades, not every power has a number and nothing is between them.
 fn decades(low: f64, high: f64) -> Vec<(f64, Option<String>)> {
     let span = (high / low).log10();
     let every = if span > 8.0 { 2 } else { 1 };
     let mut ticks = Vec::new();
     for power in low.log10().floor() as i32..=high.log10().ceil() as i32 {
-        for digit in 1..10 {
+        for digit in 1..if span > 8.0 { 2 } else { 10 } {
             let value = f64::from(digit) * 10f64.powi(power);
             let named = match digit {
                 1 => power % every == 0,
-                2 | 5 => span < 2.5,
+                2 | 5 => span < 3.2,
                 _ => false,
             };
             ticks.push((value, named.then(|| plain(value))));

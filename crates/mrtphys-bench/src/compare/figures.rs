@@ -71,6 +71,17 @@ fn entries(scenes: &[SceneRows]) -> Vec<(&'static str, &'static str)> {
     all.filter(|&(engine, margin)| scenes.iter().any(|s| s.find(engine, margin).is_some())).collect()
 }
 
+/// Kinds of scenes, in their order.
+fn kinds(scenes: &[SceneRows]) -> Vec<&str> {
+    let mut kinds: Vec<&str> = Vec::new();
+    for scene in scenes {
+        if !kinds.contains(&scene.kind()) {
+            kinds.push(scene.kind());
+        }
+    }
+    kinds
+}
+
 fn axis(label: &str, scale: Scale, include: Vec<f64>, ticks: Ticks) -> Axis {
     Axis { label: label.into(), scale, include, ticks }
 }
@@ -78,12 +89,7 @@ fn axis(label: &str, scale: Scale, include: Vec<f64>, ticks: Ticks) -> Axis {
 /// A panel for each kind of bodies, a line for each engine.
 fn speed(scenes: &[SceneRows], threads: u64) -> Option<String> {
     let scenes: Vec<SceneRows> = scenes.iter().filter(|s| s.rate() == Some(RATE)).cloned().collect();
-    let mut kinds: Vec<&str> = Vec::new();
-    for scene in &scenes {
-        if !kinds.contains(&scene.kind()) {
-            kinds.push(scene.kind());
-        }
-    }
+    let kinds = kinds(&scenes);
     let time = |scene: &SceneRows, engine: &str| {
         let row = scene.find(engine, "default").filter(|r| r.invalid().is_none())?;
         Some((scene.bodies()?, 1e6 * row.start()? / scene.bodies()?, false))
@@ -94,6 +100,9 @@ fn speed(scenes: &[SceneRows], threads: u64) -> Option<String> {
         return None;
     }
     let clock = if clock(threads) == "wall" { "wall time" } else { "processor time" };
+    let mut sizes: Vec<f64> = scenes.iter().filter_map(SceneRows::bodies).collect();
+    sizes.sort_by(f64::total_cmp);
+    sizes.dedup();
     let panel = |kind: &&str| {
         let here = || scenes.iter().filter(|s| s.kind() == *kind);
         let series = EngineKind::ALL.map(|(_, engine, title)| {
@@ -102,11 +111,10 @@ fn speed(scenes: &[SceneRows], threads: u64) -> Option<String> {
             points.sort_by(|a, b| a.0.total_cmp(&b.0));
             Series { name: title.into(), color, marker, line: true, points }
         });
-        let sizes = here().filter_map(SceneRows::bodies).collect();
         Plot {
             title: format!("Gas of {kind}, steps of 1/{RATE} s"),
-            x: axis("bodies", Scale::Log, vec![], Ticks::At(sizes)),
-            // The same range in every panel, so that they can be compared.
+            // The same ranges in every panel, so that they can be compared.
+            x: axis("bodies", Scale::Log, sizes.clone(), Ticks::At(sizes.clone())),
             y: axis(
                 &format!("{clock} per body and step [ns]"),
                 Scale::Log,
@@ -118,8 +126,10 @@ fn speed(scenes: &[SceneRows], threads: u64) -> Option<String> {
         }
     };
     let plots: Vec<Plot> = kinds.iter().map(panel).collect();
-    let mut notes =
-        vec![format!("Medians near the start, {threads} thread(s), margins of contact as the engines have them.")];
+    let mut notes = vec![format!(
+        "Medians near the start, {threads} thread{}, margins as the engines have them.",
+        if threads == 1 { "" } else { "s" }
+    )];
     notes.extend(left_out(&scenes));
     Some(figure(&plots, Layout::row(2), &notes))
 }
@@ -135,11 +145,13 @@ fn energy(scenes: &[SceneRows]) -> Option<String> {
     if all.is_empty() {
         return None;
     }
+    let kinds = kinds(scenes);
     let mut rates: Vec<u64> = scenes.iter().filter_map(SceneRows::rate).collect();
     rates.sort_unstable_by(|a, b| b.cmp(a));
     rates.dedup();
     let panel = |rate: &u64| {
-        let here: Vec<&SceneRows> = scenes.iter().filter(|s| s.rate() == Some(*rate)).collect();
+        let mut here: Vec<&SceneRows> = scenes.iter().filter(|s| s.rate() == Some(*rate)).collect();
+        here.sort_by_key(|s| kinds.iter().position(|k| *k == s.kind()));
         let series = entries.iter().enumerate().map(|(slot, entry)| {
             let (color, marker) = style(entry.0);
             // Side by side within nine tenths of the field, so that equal errors do not hide each other.
@@ -152,7 +164,7 @@ fn energy(scenes: &[SceneRows]) -> Option<String> {
         Plot {
             title: format!("Energy at the end of the run, steps of 1/{rate} s"),
             x: axis("bodies", Scale::Fields, vec![], Ticks::Named(here.iter().map(name).collect())),
-            y: axis("|E/E₀ - 1|", Scale::Log, [&all[..], &[LEAST]].concat(), Ticks::Auto),
+            y: axis("|E/E₀ − 1|", Scale::Log, [&all[..], &[LEAST]].concat(), Ticks::Auto),
             series: series.collect(),
             band: Some(Band { of_x: false, range: (0.0, f64::EPSILON), name: "exact to round-off" }),
         }
