@@ -38,7 +38,12 @@ fn main() {
         if unix && !runs(&tool("CXX", "c++")) {
             missing.push("feature jolt: a C++ compiler (Debian: apt install g++)");
         }
-        if !has_libclang() {
+        if env::var_os("LIBCLANG_PATH").is_some() {
+            // Where it is set, bindgen looks nowhere else.
+            if !has_libclang() {
+                missing.push("feature jolt: libclang, which LIBCLANG_PATH does not hold (Debian: apt install libclang-dev clang)");
+            }
+        } else if !has_libclang() {
             // No error: bindgen may know a place that this program does not.
             println!(
                 "cargo::warning=feature jolt needs libclang, which is in none of the usual places: apt install libclang-dev \

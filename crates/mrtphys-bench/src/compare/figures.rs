@@ -127,7 +127,7 @@ fn speed(scenes: &[SceneRows], threads: u64) -> Option<String> {
     };
     let plots: Vec<Plot> = kinds.iter().map(panel).collect();
     let mut notes = vec![format!(
-        "Medians near the start, {threads} thread{}, margins as the engines have them.",
+        "Medians near the start, {threads} thread{}, margins left as the engines have them.",
         if threads == 1 { "" } else { "s" }
     )];
     notes.extend(left_out(&scenes));
@@ -160,20 +160,21 @@ fn energy(scenes: &[SceneRows]) -> Option<String> {
             let points = places.filter_map(|(x, y)| Some((x, y?, entry.1 == "thin"))).collect();
             Series { name: Row::of(entry.0, entry.1).title(), color, marker, line: false, points }
         });
-        let name = |s: &&SceneRows| format!("{}\n{}", s.bodies().map_or_else(String::new, plain), s.kind());
+        let name = |s: &&SceneRows| {
+            let steps = s.rows.iter().filter_map(|r| r.truth("steps")).fold(0.0, f64::max);
+            let seconds = (1e3 * steps / *rate as f64).round() / 1e3;
+            format!("{}\n{}\n{seconds} s", s.bodies().map_or_else(String::new, plain), s.kind())
+        };
         Plot {
             title: format!("Energy at the end of the run, steps of 1/{rate} s"),
-            x: axis("bodies", Scale::Fields, vec![], Ticks::Named(here.iter().map(name).collect())),
+            x: axis("bodies and simulated time", Scale::Fields, vec![], Ticks::Named(here.iter().map(name).collect())),
             y: axis("|E/E₀ − 1|", Scale::Log, [&all[..], &[LEAST]].concat(), Ticks::Auto),
             series: series.collect(),
             band: Some(Band { of_x: false, range: (0.0, f64::EPSILON), name: "exact to round-off" }),
         }
     };
     let plots: Vec<Plot> = rates.iter().map(panel).collect();
-    let mut notes = vec![
-        "Steps of a run: see the tables. Open markers: thin margins. What is exact to the last bit is drawn at 2⁻⁵³."
-            .into(),
-    ];
+    let mut notes = vec!["Open markers: thin margins. What is exact to the last bit is drawn at 2⁻⁵³.".into()];
     notes.extend(left_out(scenes));
     Some(figure(&plots, Layout { columns: 1, width: 700.0, height: 250.0 }, &notes))
 }
@@ -279,7 +280,12 @@ mod tests {
         assert_eq!(jolt[0].1, jolt[1].1);
         assert!((jolt[0].0 - jolt[1].0).abs() > 10.0, "{jolt:?}");
         assert!(ours[0].1 > jolt[0].1 + 100.0, "the floor is below: {ours:?} {jolt:?}");
-        assert!(energy.contains(">100</text>") && energy.contains(">a</text>") && energy.contains("round-off"));
+        assert!(
+            energy.contains(">100</text>")
+                && energy.contains(">a</text>")
+                && energy.contains(">0.008 s</text>")
+                && energy.contains("round-off")
+        );
         assert_eq!(energy.matches("fill=\"#fff\" stroke=\"#0072b2\"").count(), 2, "thin is open, in the legend too");
         assert!(!energy.contains("invalid"));
     }
