@@ -7,6 +7,7 @@ pub mod experiment;
 pub mod gas;
 pub mod measure;
 pub mod peers;
+pub mod plot;
 pub mod table;
 
 pub use gas::{GasShape, GasSpec};

@@ -1,6 +1,7 @@
 //! The process that serves one engine: a line with a command comes in, a line of JSON goes out.
 
 use super::session::Session;
+use super::stats::Times;
 use crate::peers::scene::SceneData;
 use crate::peers::{EngineKind, Margin, Setup};
 use serde_json::{Value, json};
@@ -55,7 +56,8 @@ fn obey(session: &mut Session, line: &str) -> Result<Value, String> {
     match command {
         "time" => {
             let burst = session.time(steps)?;
-            Ok(json!({ "median": burst.median, "mean": burst.mean, "cpu": burst.cpu, "wall": burst.wall }))
+            let times = |t: Times| json!({ "median": t.median, "mean": t.mean, "total": t.total });
+            Ok(json!({ "cpu": times(burst.cpu), "wall": times(burst.wall) }))
         }
         "watch" => {
             let w = session.watch(steps)?;

@@ -18,9 +18,10 @@ use std::time::Duration;
 
 /// Runs a scene in all engines.
 pub fn conduct(scene: &Scene, options: &Options, again: &[&str], log: &mut Log) -> Result<(), String> {
-    let file = SceneFile::new(&options.folder, &scene.data())?;
+    let data = scene.subject.data();
+    let file = SceneFile::new(&options.folder, &data)?;
     log.scene.clone_from(&scene.name);
-    log.put(described(scene))?;
+    log.put(described(scene, &data))?;
     let mut players = Vec::new();
     for &(kind, margin) in &options.entries {
         if margin == Margin::Thin && !scene.plan.thin {
@@ -36,15 +37,16 @@ pub fn conduct(scene: &Scene, options: &Options, again: &[&str], log: &mut Log) 
             Err(why) => failed(log, kind, margin, &why)?,
         }
     }
-    let mut stage = Stage { players, log, patience: options.patience };
+    let mut stage = Stage { players, log, patience: options.patience, dt: data.dt };
     stage.play(scene)
 }
 
-fn described(scene: &Scene) -> Value {
-    let (gas, plan) = (&scene.gas, &scene.plan);
+fn described(scene: &Scene, data: &SceneData) -> Value {
+    let plan = &scene.plan;
     json!({
-        "what": "scene", "scene": scene.name, "bodies": gas.bodies(), "rate": gas.rate,
-        "burst": plan.burst, "rounds": plan.rounds, "late": plan.late, "end": plan.end,
+        "what": "scene", "scene": scene.name, "bodies": data.bodies.iter().filter(|b| !b.fixed).count(),
+        "rate": (1.0 / data.dt).round() as u64, "flies": scene.subject.flies(), "burst": plan.burst,
+        "rounds": plan.rounds, "late": plan.late, "end": plan.end,
     })
 }
 
@@ -79,6 +81,8 @@ struct Stage<'a, P: Plays> {
     players: Vec<P>,
     log: &'a mut Log,
     patience: Duration,
+    /// step \[s\]
+    dt: f64,
 }
 
 impl<P: Plays> Stage<'_, P> {
@@ -121,7 +125,7 @@ impl<P: Plays> Stage<'_, P> {
     }
 
     fn watch(&mut self, steps: u64, scene: &Scene) -> Result<(), String> {
-        let dt = 1.0 / f64::from(scene.gas.rate);
+        let dt = self.dt;
         self.all(&format!("watch {steps}"), |answer| {
             let number = |key: &str| answer[key].as_f64().unwrap_or(f64::NAN);
             let (body_steps, changes) = (number("body_steps"), number("changes"));
@@ -129,7 +133,7 @@ impl<P: Plays> Stage<'_, P> {
             let moved = if body_steps > changes { number("moved") / (body_steps - changes) } else { f64::NAN };
             Some(json!({
                 "what": "watch", "steps": answer["steps"], "rate": changes / (body_steps * dt), "speed": speed,
-                "theory": scene.theory(speed), "moved": moved,
+                "theory": scene.subject.theory(speed), "moved": moved,
             }))
         })
     }
@@ -313,7 +317,7 @@ mod tests {
         let told = Rc::new(RefCell::new(Vec::new()));
         let toy = |kind, fails_at| Toy { kind, fails_at, told: told.clone() };
         let players = vec![toy(EngineKind::Ours, None), toy(EngineKind::Jolt, fails_at)];
-        let mut stage = Stage { players, log: &mut log, patience: Duration::ZERO };
+        let mut stage = Stage { players, log: &mut log, patience: Duration::ZERO, dt: 1.0 / 512.0 };
         stage.play(&catalogue().remove(0).quick()).unwrap();
         let written = std::fs::read_to_string(&path).unwrap();
         let _ = std::fs::remove_file(&path);

@@ -8,6 +8,7 @@
 pub mod check;
 mod child;
 mod conductor;
+mod figures;
 mod machine;
 mod options;
 pub mod overlap;
@@ -48,7 +49,8 @@ pub fn run(args: &[String], again: &[&str]) -> Result<(), String> {
     };
     let tables = report::tables(&records);
     if let Some(path) = &options.markdown {
-        report::splice(path, &tables)?;
+        let pictures = figures::write(path, &figures::all(&records))?;
+        report::splice(path, &(pictures + &tables))?;
     }
     say(&tables)
 }
@@ -63,9 +65,8 @@ fn measure(options: &Options, args: &[String], again: &[&str]) -> Result<Vec<Val
     log.put(machine::record(&command, options.threads))?;
     say(&format!("results as they come: {}", path.display()))?;
     for scene in &options.scenes {
-        let before = log.records.len();
         conductor::conduct(scene, options, again, &mut log)?;
-        say(&report::details(&log.records[before..]))?;
+        say(&report::details(&log.records, &scene.name))?;
     }
     Ok(log.records)
 }

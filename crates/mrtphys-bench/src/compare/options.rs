@@ -16,10 +16,11 @@ Usage: mrtphys-bench peers [--engines NAME,...] [--scenes NAME,...] [--margins d
 --engines    ours, rapier, box3d, jolt, physx; all that were built if left out
 --scenes     such as spheres-16@512, or spheres-16 for all of its rates; all if left out
 --margins    default: what a peer does unless told; thin: a twentieth of it, best for energy; both if left out
---threads    threads of each engine; with more than one, times are wall times
+--threads    threads of each engine; with more than one, times are wall times, and Rapier needs its feature rapier-parallel
 --quick      a few steps of each scene
 -o           folder of results.jsonl, written as the results come; out/peers if left out
 --markdown   writes the tables into FILE between the lines <!-- tables --> and <!-- end of tables -->
+             and the figures into the folder pictures beside it
 --patience   seconds after which an engine that does not answer has failed; 900 if left out
 --from       makes the tables again from a results.jsonl, also of a run that was broken off
 ";

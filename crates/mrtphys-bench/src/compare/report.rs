@@ -1,6 +1,6 @@
 //! The tables: Markdown with aligned columns, the same on the terminal and in the documents.
 
-use super::results::{Row, SceneRows, gather};
+use super::results::{Row, SceneRows, clock, gather, threads};
 use crate::peers::EngineKind;
 use serde_json::Value;
 use std::fmt::Write;
@@ -18,7 +18,8 @@ pub fn tables(records: &[Value]) -> String {
         out.push_str(&machine_text(machine));
     }
     out.push_str(&engines_text(records));
-    out.push_str("\n### Time of a step near the start \\[ms\\], in brackets times ours\n\n");
+    let clock = clock_text(records);
+    let _ = writeln!(out, "\n### {clock} of a step near the start \\[ms\\], in brackets times ours\n");
     out.push_str(&matrix(&scenes, true, |row, ours| time_cell(row, row.start(), ours.and_then(Row::start))));
     out.push_str("\n### The same in the second window, after a simulated second\n\n");
     out.push_str(&matrix(&scenes, true, |row, ours| time_cell(row, row.late(), ours.and_then(Row::late))));
@@ -30,14 +31,23 @@ pub fn tables(records: &[Value]) -> String {
     out.push_str(&matrix(&scenes, false, |row, _| row.truth("energy").map_or_else(|| state(row), energy)));
     out.push_str("\n### Each scene\n");
     for scene in &scenes {
-        out.push_str(&scene_text(scene));
+        out.push_str(&scene_text(scene, &clock));
     }
     out
 }
 
-/// The table of the scene whose records these are, for the terminal.
-pub fn details(records: &[Value]) -> String {
-    gather(records).iter().map(scene_text).collect()
+/// The table of a scene, for the terminal.
+pub fn details(records: &[Value], scene: &str) -> String {
+    let clock = clock_text(records);
+    gather(records).iter().filter(|s| s.name == scene).map(|s| scene_text(s, &clock)).collect()
+}
+
+/// What the times are.
+fn clock_text(records: &[Value]) -> String {
+    match threads(records) {
+        n if clock(n) == "wall" => format!("Wall time, {n} threads,"),
+        _ => "Processor time".into(),
+    }
 }
 
 /// Puts the tables into a document, between the two lines that mark their place.
@@ -55,7 +65,7 @@ pub fn splice(path: &Path, tables: &str) -> Result<(), String> {
 fn machine_text(machine: &Value) -> String {
     let text = |key: &str| machine[key].as_str().unwrap_or("?").to_string();
     let threads = machine["threads"].as_u64().unwrap_or(1);
-    let clock = if threads > 1 { "wall time" } else { "processor time of the engine's process" };
+    let clock = if clock(threads) == "wall" { "wall time" } else { "processor time of the engine's process" };
     format!(
         "Machine: {}, {} cores, {}, {}, load {} at the start. {threads} thread(s) an engine; times are {clock}.\n\n    {}\n",
         text("cpu"),
@@ -126,9 +136,12 @@ fn state(row: &Row) -> String {
     if row.failure.is_some() { "failed".into() } else { String::new() }
 }
 
-fn scene_text(scene: &SceneRows) -> String {
-    let record = &scene.record;
-    let mut out = format!("\n#### {}: {} bodies, 1/{} s a step\n\n", scene.name, record["bodies"], record["rate"]);
+fn scene_text(scene: &SceneRows, clock: &str) -> String {
+    let (name, bodies, rate) = (&scene.name, &scene.record["bodies"], &scene.record["rate"]);
+    let mut out = format!(
+        "\n#### {name}: {bodies} bodies, 1/{rate} s a step; ms: {}\n\n",
+        clock.to_lowercase().trim_end_matches(',')
+    );
     let head = [
         "engine",
         "start ms",
@@ -238,8 +251,9 @@ mod tests {
     use serde_json::json;
 
     fn burst(engine: &str, window: &str, median: f64) -> Value {
+        let times = |t: f64| json!({"median": t, "mean": t, "total": 4.0 * t});
         json!({"what": "burst", "scene": "s@8", "engine": engine, "margin": "default", "window": window, "steps": 4,
-            "median": median, "mean": median, "cpu": 4.0 * median, "wall": 4.0 * median})
+            "cpu": times(median), "wall": times(median)})
     }
 
     fn watch(engine: &str, moved: Value) -> Value {
@@ -269,8 +283,31 @@ mod tests {
             assert_eq!(!text.contains("INVALID"), valid, "{text}");
         }
         let mut two_threads = burst("box3d", "start", 0.5);
-        two_threads["wall"] = json!(1.0);
-        assert!(tables(&[scene, two_threads]).contains("2.0 threads"));
+        two_threads["wall"] = json!({"median": 0.25, "mean": 0.25, "total": 1.0});
+        assert!(tables(&[scene.clone(), two_threads.clone()]).contains("2.0 threads"));
+        let machine = json!({"what": "machine", "threads": 2});
+        assert!(!tables(&[machine, scene.clone(), two_threads]).contains("INVALID"));
+        // In a stack nothing flies: that says nothing against it.
+        let mut stack = scene;
+        stack["flies"] = json!(false);
+        assert!(!tables(&[stack, burst("box3d", "start", 0.5), watch("box3d", Value::Null)]).contains("INVALID"));
+    }
+
+    #[test]
+    fn several_threads_are_timed_by_the_wall_and_the_tables_say_so() {
+        let scene = json!({"what": "scene", "scene": "s@8", "bodies": 8, "rate": 8, "late": 4});
+        let mut burst = burst("jolt", "start", 0.008);
+        burst["wall"] = json!({"median": 0.005, "mean": 0.006, "total": 0.02});
+        for (threads, time, clock) in
+            [(1, "8.00", "Processor time of a step"), (2, "5.00", "Wall time, 2 threads, of a")]
+        {
+            let records = [json!({"what": "machine", "threads": threads}), scene.clone(), burst.clone()];
+            let text = tables(&records);
+            assert!(text.contains(clock) && text.contains(time), "{text}");
+            // On the terminal too, where a scene's table stands alone.
+            let text = details(&records, "s@8");
+            assert!(text.contains(&clock.to_lowercase()[..9]) && text.contains(time), "{text}");
+        }
     }
 
     #[test]

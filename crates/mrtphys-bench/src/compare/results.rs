@@ -18,8 +18,12 @@ pub struct Row {
     late: Vec<f64>,
     /// mean time of a step \[ms\] in every turn of the last window there was
     means: Vec<f64>,
-    /// greatest ratio of processor time to wall time in a turn
+    /// most threads that computed at once in a turn: processor time by wall time
     busy: f64,
+    /// threads that the engine was given
+    threads: u64,
+    /// whether bodies of the scene fly freely while it is watched
+    flies: bool,
     /// record of the watch
     watch: Value,
     /// record of the end
@@ -39,9 +43,20 @@ pub struct SceneRows {
     pub rows: Vec<Row>,
 }
 
+/// Threads of each engine in a run.
+pub fn threads(records: &[Value]) -> u64 {
+    records.iter().find(|r| r["what"] == "machine").and_then(|r| r["threads"].as_u64()).unwrap_or(1)
+}
+
+/// The clock that times a step: the processor time of several threads says nothing of how long a step takes, and with one
+/// thread the time that goes by counts what else the machine does.
+pub fn clock(threads: u64) -> &'static str {
+    if threads > 1 { "wall" } else { "cpu" }
+}
+
 /// Sorts records by scene and engine.
 pub fn gather(records: &[Value]) -> Vec<SceneRows> {
-    let threads = records.iter().find(|r| r["what"] == "machine").map_or(1, |r| r["threads"].as_u64().unwrap_or(1));
+    let threads = threads(records);
     let mut scenes: Vec<SceneRows> = Vec::new();
     for record in records {
         let Some(name) = record["scene"].as_str() else { continue };
@@ -52,19 +67,35 @@ pub fn gather(records: &[Value]) -> Vec<SceneRows> {
         let scene = &mut scenes[at];
         match record["engine"].as_str() {
             None => scene.record = record.clone(),
-            Some(engine) => scene.row(engine, record["margin"].as_str().unwrap_or_default()).take(record, threads),
+            Some(engine) => scene.row(engine, record["margin"].as_str().unwrap_or_default(), threads).take(record),
         }
     }
     scenes
 }
 
 impl SceneRows {
-    fn row(&mut self, engine: &str, margin: &str) -> &mut Row {
+    fn row(&mut self, engine: &str, margin: &str, threads: u64) -> &mut Row {
         let at = self.rows.iter().position(|r| r.engine == engine && r.margin == margin).unwrap_or_else(|| {
-            self.rows.push(Row::of(engine, margin));
+            let flies = self.record["flies"] != false;
+            self.rows.push(Row { threads, flies, ..Row::of(engine, margin) });
             self.rows.len() - 1
         });
         &mut self.rows[at]
+    }
+
+    /// What stands in the name before the size: `spheres`.
+    pub fn kind(&self) -> &str {
+        self.name.split(['-', '@']).next().unwrap_or(&self.name)
+    }
+
+    /// Movable bodies.
+    pub fn bodies(&self) -> Option<f64> {
+        self.record["bodies"].as_f64()
+    }
+
+    /// Steps per second.
+    pub fn rate(&self) -> Option<u64> {
+        self.record["rate"].as_u64()
     }
 
     /// This project's row, if it took part.
@@ -84,9 +115,9 @@ impl Row {
         Row { engine: engine.into(), margin: margin.into(), ..Row::default() }
     }
 
-    fn take(&mut self, record: &Value, threads: u64) {
+    fn take(&mut self, record: &Value) {
         match record["what"].as_str() {
-            Some("burst") => self.take_burst(record, threads),
+            Some("burst") => self.take_burst(record),
             Some("watch") => self.watch = record.clone(),
             Some("truth") => self.truth = record.clone(),
             Some("failed") => self.failure = record["why"].as_str().map(String::from),
@@ -94,21 +125,16 @@ impl Row {
         }
     }
 
-    fn take_burst(&mut self, record: &Value, threads: u64) {
-        let number = |key: &str| record[key].as_f64().unwrap_or(f64::NAN);
-        let wall = 1e3 * number("wall") / number("steps");
-        // The processor time of several threads says nothing of how long a step takes.
-        let (median, mean) = if threads > 1 { (wall, wall) } else { (1e3 * number("median"), 1e3 * number("mean")) };
-        if threads == 1 {
-            self.busy = self.busy.max(number("cpu") / number("wall"));
-        }
+    fn take_burst(&mut self, record: &Value) {
+        let number = |clock: &str, key: &str| record[clock][key].as_f64().unwrap_or(f64::NAN);
+        self.busy = self.busy.max(number("cpu", "total") / number("wall", "total"));
         let late = record["window"] == "late";
         let times = if late { &mut self.late } else { &mut self.start };
-        times.push(median);
+        times.push(1e3 * number(clock(self.threads), "median"));
         if late && times.len() == 1 {
             self.means.clear();
         }
-        self.means.push(mean);
+        self.means.push(1e3 * number(clock(self.threads), "mean"));
     }
 
     /// Name in tables.
@@ -157,6 +183,7 @@ impl Row {
         if !self.watch.is_null() {
             match self.watched("moved") {
                 // A number that is none is written as null: nothing was in free flight, or nothing is a number.
+                None if !self.flies => {}
                 None => return Some("no body was seen in free flight".into()),
                 Some(part) if part < MOVED_ENOUGH => {
                     return Some(format!("only {:.0} % of the bodies in free flight moved v t", 100.0 * part));
@@ -164,6 +191,7 @@ impl Row {
                 Some(_) => {}
             }
         }
-        (self.busy > 1.1).then(|| format!("{:.1} threads computed at once", self.busy))
+        let more = self.busy > 1.1 * self.threads.max(1) as f64;
+        more.then(|| format!("{:.1} threads computed at once", self.busy))
     }
 }

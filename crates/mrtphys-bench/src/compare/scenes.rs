@@ -1,8 +1,10 @@
-//! The scenes of the comparison and how long each is run. A scene of another kind is one more line of [`catalogue`].
+//! The scenes of the comparison and how long each is run. A scene of another kind is a [`Subject`] and one more line of
+//! [`catalogue`].
 
 use crate::gas::{GasShape, GasSpec};
 use crate::peers::scene::SceneData;
 use mrtphys::BroadPhaseKind;
+use std::sync::Arc;
 
 /// How long a scene is run, in steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,27 +23,51 @@ pub struct Plan {
     pub thin: bool,
 }
 
+/// What is simulated.
+pub trait Subject {
+    /// The scene that every engine is given.
+    fn data(&self) -> SceneData;
+
+    /// Steps with a change of velocity per body and second by theory, at this root of the mean square velocity \[m/s\]; `None`
+    /// where there is no theory.
+    fn theory(&self, _speed: f64) -> Option<f64> {
+        None
+    }
+
+    /// Whether bodies fly freely while they are watched, so that a run in which none is seen to is none of this scene. In a
+    /// stack none does.
+    fn flies(&self) -> bool;
+}
+
+impl Subject for GasSpec {
+    fn data(&self) -> SceneData {
+        GasSpec::data(self)
+    }
+
+    fn theory(&self, speed: f64) -> Option<f64> {
+        (self.shape == GasShape::Spheres).then(|| self.changes_per_body_second(speed * speed))
+    }
+
+    fn flies(&self) -> bool {
+        true
+    }
+}
+
 /// A scene of the comparison.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Scene {
-    /// name on the command line and in tables
+    /// name on the command line and in tables: kind and size, `@`, steps per second
     pub name: String,
     /// what is simulated
-    pub gas: GasSpec,
+    pub subject: Arc<dyn Subject>,
     /// how long
     pub plan: Plan,
 }
 
 impl Scene {
-    /// The scene itself.
-    pub fn data(&self) -> SceneData {
-        self.gas.data()
-    }
-
-    /// Steps with a change of velocity per body and second by kinetic theory, at this root of the mean square velocity; `None`
-    /// where there is no theory.
-    pub fn theory(&self, speed: f64) -> Option<f64> {
-        (self.gas.shape == GasShape::Spheres).then(|| self.gas.changes_per_body_second(speed * speed))
+    /// Name without the steps per second.
+    pub fn group(&self) -> &str {
+        self.name.split('@').next().unwrap_or(&self.name)
     }
 
     /// The same for a smoke test: some steps of everything.
@@ -59,7 +85,7 @@ pub fn catalogue() -> Vec<Scene> {
     let plan = |burst, rounds, late, watch, end, thin| Plan { burst, rounds, late, watch, end, thin };
     let gas = |shape, n, rate, plan| {
         let gas = GasSpec { shape, n, rate, broad_phase: BroadPhaseKind::SortedGrid };
-        Scene { name: format!("{}@{rate}", gas.name()), gas, plan }
+        Scene { name: format!("{}@{rate}", gas.name()), subject: Arc::new(gas), plan }
     };
     vec![
         gas(Spheres, 8, 512, plan(64, 3, Some(512), 512, 5120, true)),
@@ -89,7 +115,7 @@ pub fn chosen(names: &[String]) -> Result<Vec<Scene>, String> {
         return Ok(all);
     }
     // `spheres-8` stands for both of its rates.
-    let fits = |scene: &Scene, name: &str| scene.name == name || scene.gas.name() == name;
+    let fits = |scene: &Scene, name: &str| scene.name == name || scene.group() == name;
     for name in names {
         if !all.iter().any(|s| fits(s, name)) {
             let known: Vec<_> = all.iter().map(|s| s.name.as_str()).collect();

@@ -2,21 +2,17 @@
 
 use super::check::{self, Masses, Watched};
 use super::overlap::{Overlaps, overlaps};
-use super::stats::{Clock, median};
+use super::stats::{Clock, Times};
 use crate::peers::scene::SceneData;
 use crate::peers::{Engine, State};
 
-/// Times of some steps \[s\].
+/// Times of some steps by both clocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Burst {
-    /// median processor time of a step
-    pub median: f64,
-    /// mean processor time of a step
-    pub mean: f64,
-    /// processor time of all steps
-    pub cpu: f64,
+    /// time that all threads of this process computed
+    pub cpu: Times,
     /// time that went by
-    pub wall: f64,
+    pub wall: Times,
 }
 
 /// What the bodies are like now.
@@ -65,20 +61,16 @@ impl Session {
     /// The engine's.
     pub fn time(&mut self, steps: u64) -> Result<Burst, String> {
         let whole = Clock::start()?;
-        let mut times = Vec::with_capacity(steps as usize);
+        let (mut cpu, mut wall) = (Vec::with_capacity(steps as usize), Vec::with_capacity(steps as usize));
         for _ in 0..steps {
             let clock = Clock::start()?;
             self.engine.step()?;
-            times.push(clock.read().0.as_secs_f64());
+            let (computed, went_by) = clock.read();
+            cpu.push(computed.as_secs_f64());
+            wall.push(went_by.as_secs_f64());
         }
-        let (cpu, wall) = whole.read();
-        let sum: f64 = times.iter().sum();
-        Ok(Burst {
-            median: median(&times).unwrap_or(f64::NAN),
-            mean: sum / times.len() as f64,
-            cpu: cpu.as_secs_f64(),
-            wall: wall.as_secs_f64(),
-        })
+        let (computed, went_by) = whole.read();
+        Ok(Burst { cpu: Times::of(&cpu, computed), wall: Times::of(&wall, went_by) })
     }
 
     /// Makes steps.

@@ -20,6 +20,25 @@ pub fn spread(values: &[f64]) -> Option<f64> {
     (values.len() > 1).then(|| Some((high - low) / median(values)?))?
 }
 
+/// What is kept of the times of some steps \[s\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Times {
+    /// median of the steps
+    pub median: f64,
+    /// mean of the steps
+    pub mean: f64,
+    /// from the first step's begin to the last one's end
+    pub total: f64,
+}
+
+impl Times {
+    /// Those of the steps, with the time of all together.
+    pub fn of(steps: &[f64], total: Duration) -> Times {
+        let mean = steps.iter().sum::<f64>() / steps.len() as f64;
+        Times { median: median(steps).unwrap_or(f64::NAN), mean, total: total.as_secs_f64() }
+    }
+}
+
 /// Both clocks.
 pub struct Clock {
     cpu: ProcessTime,

@@ -2,7 +2,7 @@
 
 use super::csv::Table;
 use super::methods::Method;
-use super::plot::{Axis, Marker, Plot, Scale, Series, figure};
+use crate::plot::{self, Axis, Band, Layout, Marker, Plot, Scale, Series, Ticks};
 
 /// The tables.
 #[derive(Clone, Debug, Default)]
@@ -108,18 +108,22 @@ fn bodies_axis() -> Axis {
         label: "movable bodies m = n³".into(),
         scale: Scale::Log,
         include: vec![],
-        ticks: [2.0f64, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 47.0].map(|n| n.powi(3)).to_vec(),
+        ticks: Ticks::At([2.0f64, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 47.0].map(|n| n.powi(3)).to_vec()),
     }
 }
 
 fn axis(label: &str, scale: Scale, include: &[f64]) -> Axis {
-    Axis { label: label.into(), scale, include: include.to_vec(), ticks: vec![] }
+    Axis { label: label.into(), scale, include: include.to_vec(), ticks: Ticks::Auto }
 }
 
-const BAND: Option<(f64, f64, &'static str)> = Some((8.0, 512.0, "range of the thesis"));
+const BAND: Option<Band> = Some(Band { of_x: true, range: (8.0, 512.0), name: "range of the thesis" });
 
 fn plot(title: &str, y: Axis, series: Vec<Series>) -> Plot {
     Plot { title: title.into(), x: bodies_axis(), y, series, band: BAND }
+}
+
+fn figure(plots: &[Plot], notes: &[String]) -> String {
+    plot::figure(plots, Layout::row(plots.len()), notes)
 }
 
 fn notes(of: &str) -> Vec<String> {
@@ -218,7 +222,7 @@ fn clusters_edge(table: &Table) -> String {
         })
     };
     let edge_plot = |title: &str, label: &str, series: Vec<Series>| {
-        let ticks = vec![6.0, 8.0, 16.0, 32.0, 64.0, 128.0];
+        let ticks = Ticks::At(vec![6.0, 8.0, 16.0, 32.0, 64.0, 128.0]);
         let x = Axis { label: "edge of the box [m]".into(), scale: Scale::Log, include: vec![], ticks };
         Plot { title: title.into(), x, y: axis(label, Scale::Log, &[]), series, band: None }
     };

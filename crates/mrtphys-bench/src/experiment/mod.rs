@@ -6,7 +6,6 @@ pub mod figures;
 pub mod measure;
 pub mod methods;
 pub mod plan;
-pub mod plot;
 pub mod report;
 pub mod scenes;
 

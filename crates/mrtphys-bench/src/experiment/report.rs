@@ -3,7 +3,7 @@
 use super::csv::Table;
 use super::figures::{Tables, thesis};
 use super::methods::Method;
-use super::plot::{escape, grouped};
+use crate::plot::{escape, grouped};
 use std::fmt::Write;
 
 /// A number with as many digits as say something.

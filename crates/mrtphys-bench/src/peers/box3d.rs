@@ -4,6 +4,8 @@ use super::scene::{NeutralBody, NeutralShape, SceneData};
 use super::{Engine, Margin, Scale, Setup, State};
 use boxddd_sys::ffi;
 use std::ffi::{c_char, c_void};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Substeps of a step: what Box3D's own documentation and samples use.
 const SUBSTEPS: i32 = 4;
@@ -20,8 +22,8 @@ struct Box3d {
     settings: String,
 }
 
-/// Puts a scene into Box3D. With one thread it has as many workers as the number of bodies needs, all of which are run in
-/// turn by the thread that steps.
+/// Puts a scene into Box3D. It has as many workers as the number of bodies needs; where these are more than threads, the
+/// threads of the pool in which it is called do their work, so that no more threads compute than were asked for.
 ///
 /// # Errors
 /// More bodies than Box3D moves, or a shape that it does not take, in words.
@@ -41,15 +43,16 @@ pub(super) fn create(scene: &SceneData, setup: Setup) -> Result<Box<dyn Engine>,
     def.maximumLinearSpeed = 1e6;
     def.enableSleep = false;
     def.workerCount = workers as u32;
-    if setup.threads == 1 && workers > 1 {
-        def.enqueueTask = Some(run_now);
-        def.finishTask = Some(nothing_left);
+    if workers > setup.threads {
+        def.enqueueTask = Some(spawn);
+        def.finishTask = Some(wait);
     }
     // SAFETY: a definition that began as the default one; it is only read.
     let world = unsafe { ffi::b3CreateWorld(&def) };
     let settings = format!(
         "{SUBSTEPS} substeps, length unit {unit}, restitution threshold 0, speed cap 1e6, fast rotation allowed, no sleep, \
-         {workers} worker(s){}",
+         {workers} worker(s) on {} thread(s){}",
+        setup.threads,
         env!("MRTPHYS_BENCH_BOX3D")
     );
     let mut engine = Box3d { world, bodies: Vec::new(), scale, dt: scene.dt as f32, settings };
@@ -57,25 +60,48 @@ pub(super) fn create(scene: &SceneData, setup: Setup) -> Result<Box<dyn Engine>,
     Ok(Box::new(engine))
 }
 
-/// Runs a task at once, on the thread that asks: Box3D's own rule is that a null handle means so.
+/// A task of Box3D with what belongs to it, on its way to another thread.
+struct Task(unsafe extern "C" fn(*mut c_void), *mut c_void);
+
+// SAFETY: Box3D hands out tasks for other threads to run; what they share is its own concern.
+unsafe impl Send for Task {}
+
+/// Gives a task to the pool. Box3D asks for no order: it says itself that there may be fewer threads than workers
+/// (`b3SolverTask`).
 ///
 /// # Safety
 /// Called by Box3D only, with its own task and the context that belongs to it.
-unsafe extern "C" fn run_now(
+unsafe extern "C" fn spawn(
     task: ffi::b3TaskCallback,
     context: *mut c_void,
     _: *mut c_void,
     _: *const c_char,
 ) -> *mut c_void {
-    if let Some(task) = task {
-        // SAFETY: the task is called once with the context that came with it, as Box3D demands.
-        unsafe { task(context) };
-    }
-    std::ptr::null_mut()
+    let Some(task) = task else { return std::ptr::null_mut() };
+    let done = Arc::new(AtomicBool::new(false));
+    let (task, told) = (Task(task, context), done.clone());
+    rayon::spawn(move || {
+        let Task(run, context) = { task };
+        // SAFETY: the task is called once with the context that came with it, which Box3D keeps until it has waited for it.
+        unsafe { run(context) };
+        told.store(true, Ordering::Release);
+    });
+    Arc::into_raw(done).cast_mut().cast()
 }
 
-/// Never called for tasks that ran at once.
-unsafe extern "C" fn nothing_left(_: *mut c_void, _: *mut c_void) {}
+/// Waits for a task and does others meanwhile.
+///
+/// # Safety
+/// Called by Box3D only, once for each task that is not null.
+unsafe extern "C" fn wait(task: *mut c_void, _: *mut c_void) {
+    // SAFETY: made by `spawn`, waited for once.
+    let done = unsafe { Arc::from_raw(task.cast_const().cast::<AtomicBool>()) };
+    while !done.load(Ordering::Acquire) {
+        if rayon::yield_now() != Some(rayon::Yield::Executed) {
+            std::hint::spin_loop();
+        }
+    }
+}
 
 fn vector([x, y, z]: [f32; 3]) -> ffi::b3Vec3 {
     ffi::b3Vec3 { x, y, z }

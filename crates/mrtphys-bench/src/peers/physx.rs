@@ -18,6 +18,8 @@ struct Physx {
     dt: f32,
     /// contact offset other than the default
     offset: Option<f32>,
+    /// threads that step
+    threads: usize,
 }
 
 /// Puts a scene into PhysX.
@@ -82,7 +84,7 @@ impl Physx {
                 return Err("PhysX makes no scene".into());
             }
             let (bodies, dt) = (Vec::with_capacity(scene.bodies.len()), scene.dt as f32);
-            Ok(Physx { foundation, physics, dispatcher, scene: made, material, bodies, scale, dt, offset })
+            Ok(Physx { foundation, physics, dispatcher, scene: made, material, bodies, scale, dt, offset, threads })
         }
     }
 
@@ -195,7 +197,8 @@ impl Engine for Physx {
     fn settings(&self) -> String {
         let offset = self.offset.unwrap_or(0.02);
         format!(
-            "contact offset {offset}, bounce threshold 1e-4, speed caps 1e6, no damping, no sleep, PGS, PCM, ABP with one thread"
+            "contact offset {offset}, bounce threshold 1e-4, speed caps 1e6, no damping, no sleep, PGS, PCM, {}",
+            if self.threads == 1 { "ABP, no worker".into() } else { format!("PABP, {} workers", self.threads) }
         )
     }
 

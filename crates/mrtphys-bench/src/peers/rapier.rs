@@ -16,8 +16,12 @@ struct Rapier {
 /// which it is called.
 ///
 /// # Errors
-/// A shape that Rapier does not take, in words.
+/// More threads than it was built for, or a shape that Rapier does not take, in words.
 pub(super) fn create(scene: &SceneData, setup: Setup) -> Result<Box<dyn Engine>, String> {
+    let parallel = cfg!(feature = "rapier-parallel");
+    if setup.threads > 1 && !parallel {
+        return Err("Rapier has one thread as it is built here: build with the feature rapier-parallel".into());
+    }
     let scale = Scale::of(scene);
     let mut world = PhysicsWorld::new();
     world.gravity = vector(scale.vector(scene.gravity));
@@ -40,13 +44,20 @@ pub(super) fn create(scene: &SceneData, setup: Setup) -> Result<Box<dyn Engine>,
         world.insert(placed(body, scale), collider).0
     });
     let handles = handles.collect();
-    let mut settings = format!(
-        "prediction {prediction}, no cap on speeds, fast rotation allowed, no sleep, SIMD width {}",
-        if cfg!(feature = "rapier-simd8") { 8 } else { 4 }
+    // Eight lanes are two times four unless the compiler may use AVX: Rapier has no other code for other processors.
+    let lanes = match (cfg!(feature = "rapier-simd8"), cfg!(target_feature = "avx")) {
+        (false, _) => "4 lanes",
+        (true, true) => "8 lanes (feature simd8)",
+        (true, false) => "8 lanes (feature simd8) compiled without AVX",
+    };
+    let settings = format!(
+        "prediction {prediction}, no cap on speeds, fast rotation allowed, no sleep, {lanes}, {}",
+        if parallel {
+            format!("feature parallel with {} thread(s)", setup.threads)
+        } else {
+            "features as shipped".into()
+        }
     );
-    if cfg!(feature = "rapier-parallel") {
-        settings.push_str(", parallel build");
-    }
     Ok(Box::new(Rapier { world, handles, scale, settings }))
 }
 

@@ -210,7 +210,7 @@ impl SceneData {
             restitution,
             friction,
             gravity,
-            container: (container == 1).then_some(corners),
+            container: flag(container)?.then_some(corners),
             shapes: Vec::new(),
             bodies: Vec::new(),
         };
@@ -254,6 +254,14 @@ fn put_u32(out: &mut Vec<u8>, values: &[u32]) {
     values.iter().for_each(|x| out.extend_from_slice(&x.to_le_bytes()));
 }
 
+/// A number that says yes or no. Any other means something that this program does not know.
+fn flag(value: u32) -> Result<bool, String> {
+    match value {
+        0 | 1 => Ok(value == 1),
+        _ => Err(format!("the flag {value}, which is neither 0 nor 1")),
+    }
+}
+
 struct Reader<'a>(&'a [u8]);
 
 impl<'a> Reader<'a> {
@@ -289,7 +297,7 @@ impl<'a> Reader<'a> {
         }
         Ok(NeutralBody {
             shape,
-            fixed: fixed == 1,
+            fixed: flag(fixed)?,
             position: self.f64s()?,
             orientation: self.f64s()?,
             velocity: self.f64s()?,
