@@ -308,8 +308,8 @@ impl Testbed {
         egui::Panel::bottom("transport").exact_size(38.0).show(ui, |ui| self.transport.show(ui, &mut self.desk));
         if self.side_panel {
             egui::Panel::right("panel")
-                .default_size(300.0)
-                .size_range(290.0..=520.0)
+                .default_size(320.0)
+                .size_range(310.0..=520.0)
                 .show(ui, |ui| self.panel.show(ui, &mut self.desk));
         }
         if self.below && self.panel.has_below() {

@@ -87,8 +87,10 @@ impl Forces {
             if ui.button("Off").on_hover_text("no gravity").clicked() {
                 self.set_gravity(desk, Vec3::ZERO);
             }
-            let entry = Entry::any("", 1.0, "where gravity points; any length");
+        });
+        ui.horizontal(|ui| {
             ui.label("towards");
+            let entry = Entry::any("", 1.0, "where gravity points; any length");
             if let Some(new) = entry.vector(ui, direction).and_then(Vec3::try_normalize) {
                 self.direction = Some(new);
                 self.set_gravity(desk, new * gravity.length());

@@ -82,6 +82,19 @@ fn meaning(place: u8) -> String {
     }
 }
 
+/// The place of what was typed: so many triangles at least, as far as there are so many.
+fn place_of(text: &str) -> Option<u8> {
+    let number = text.trim().trim_end_matches("triangles").trim_end();
+    match number.parse::<f64>() {
+        Ok(0.0) => Some(0),
+        Ok(n) if n > 0.0 => {
+            let level = (0..=FINEST).find(|l| f64::from(20 * 4u32.pow((*l).into())) >= n);
+            Some(level.unwrap_or(FINEST) + 1)
+        }
+        _ => (!number.is_empty() && "automatic".starts_with(&number.to_lowercase())).then_some(0),
+    }
+}
+
 /// The section.
 #[derive(Default)]
 pub struct Render {
@@ -119,7 +132,7 @@ impl Render {
             let mut slider = place(desk.look.quality);
             let widget = egui::Slider::new(&mut slider, 0..=FINEST + 1)
                 .custom_formatter(|x, _| meaning(x as u8))
-                .custom_parser(|text| text.parse().ok());
+                .custom_parser(|text| place_of(text).map(f64::from));
             let hint = "automatic: as finely as its size in the picture needs to look round; else all spheres alike";
             if ui.add(widget).on_hover_text(hint).changed() {
                 desk.look.quality = quality(slider);
@@ -141,7 +154,7 @@ impl Render {
         ui.horizontal_wrapped(|ui| {
             let look = &mut desk.look;
             ui.checkbox(&mut look.shadows, "Shadows").on_hover_text("the first light throws shadows");
-            ui.checkbox(&mut look.walls, "Walls").on_hover_text("boundaries are drawn");
+            ui.checkbox(&mut look.walls, "Boundaries").on_hover_text("the walls are drawn");
             ui.checkbox(&mut look.marks, "Marks").on_hover_text("spheres bear marks, by which one sees them spin");
         });
         smoothing(ui, &mut desk.look.smooth);
@@ -183,6 +196,16 @@ mod tests {
             let (rendering, shading) = parts(m);
             assert_eq!(mode(rendering, shading.unwrap_or_default()), m, "{name}");
         }
+    }
+
+    #[test]
+    fn what_is_typed_is_a_number_of_triangles() {
+        for p in 0..=FINEST + 1 {
+            assert_eq!(place_of(&meaning(p)), Some(p));
+        }
+        let read = ["300", "1e300", "auto", "0"].map(place_of);
+        assert_eq!(read, [Some(3), Some(FINEST + 1), Some(0), Some(0)]);
+        assert_eq!(["", "-5", "many", "nan"].map(place_of), [None; 4]);
     }
 
     #[test]
