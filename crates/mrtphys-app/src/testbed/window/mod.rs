@@ -11,6 +11,7 @@ mod probe;
 mod quantity;
 mod seeing;
 mod table;
+mod typed;
 
 // The parts that stand still.
 mod menu;

@@ -38,7 +38,6 @@ impl Body {
             ui.label(egui::RichText::new(text).weak());
             return;
         };
-        let scale = Scale::of(&body);
         ui.horizontal_wrapped(|ui| {
             ui.strong(&name);
             let fixed = if body.mass == Real::INFINITY { ", fixed" } else { "" };
@@ -47,15 +46,21 @@ impl Body {
                 ui.colored_label(ui.visuals().error_fg_color, "set aside: its motion was no longer finite");
             }
         });
-        egui::Grid::new("body properties").num_columns(2).spacing([6.0, 4.0]).show(ui, |ui| {
-            self.substance(ui, desk, &body, id);
-            self.place(ui, desk, &body, id, &scale);
-            self.motion(ui, desk, &body, id, &scale);
-            self.energies(ui, desk, &body, id);
-        });
-        self.surface(ui, desk, &body, id);
-        self.actions(ui, desk, &body, id);
+        // A field belongs to its body: what is typed in it does not go over to the next one.
+        ui.push_id(id, |ui| self.properties(ui, desk, &body, id));
         self.complaint(ui, desk);
+    }
+
+    fn properties(&mut self, ui: &mut egui::Ui, desk: &mut Desk, body: &State, id: BodyId) {
+        let scale = Scale::of(body);
+        egui::Grid::new("body properties").num_columns(2).spacing([6.0, 4.0]).show(ui, |ui| {
+            self.substance(ui, desk, body, id);
+            self.place(ui, desk, body, id, &scale);
+            self.motion(ui, desk, body, id, &scale);
+            self.energies(ui, desk, body, id);
+        });
+        self.surface(ui, desk, body, id);
+        self.actions(ui, desk, body, id);
     }
 
     /// Changes the world, and remembers when.
@@ -78,7 +83,7 @@ impl Body {
         ui.horizontal(|ui| {
             if !fixed {
                 let entry = Entry::positive("kg", body.mass, "mass; velocities stay");
-                if let Some(m) = entry.show(ui, body.mass).filter(|m| *m > 0.0) {
+                if let Some(m) = entry.show(ui, body.mass) {
                     self.edit(desk, false, move |w| w.set_mass(id, Mass::Value(m)));
                 }
             }
@@ -96,7 +101,7 @@ impl Body {
         if !fixed && body.volume > 0.0 {
             ui.label("Density");
             let entry = Entry::positive("kg/m3", body.density(), "mass by volume");
-            if let Some(d) = entry.show(ui, body.density()).filter(|d| *d > 0.0) {
+            if let Some(d) = entry.show(ui, body.density()) {
                 self.edit(desk, false, move |w| w.set_mass(id, Mass::Density(d)));
             }
             ui.end_row();

@@ -3,9 +3,8 @@
 use super::fields::{self, Field, Placed, STANDARD};
 use crate::testbed::window::ask::Inquiry;
 use crate::testbed::window::desk::Desk;
-use crate::testbed::window::format::number;
 use crate::testbed::window::pending::Pending;
-use crate::testbed::window::quantity::Entry;
+use crate::testbed::window::quantity::{Entry, Slid};
 use eframe::egui;
 use mrtphys::def::Settings;
 use mrtphys::{Real, Vec3};
@@ -33,7 +32,6 @@ pub struct Forces {
 impl Forces {
     /// Shows it.
     pub fn show(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
-        ui.spacing_mut().slider_width = (ui.available_width() - 130.0).clamp(80.0, 400.0);
         self.gravity(ui, desk);
         ui.add_space(4.0);
         self.medium(ui, desk);
@@ -66,14 +64,11 @@ impl Forces {
         let direction = gravity.try_normalize().or(self.direction).unwrap_or(Vec3::Y * -1.0);
         self.direction = Some(direction);
         ui.label("Gravity");
-        let mut g = gravity.length();
-        let slider = egui::Slider::new(&mut g, 0.0..=MOST)
-            .suffix(" m/s2")
-            .clamping(egui::SliderClamping::Never)
-            .custom_formatter(|x, _| number(x));
-        let response = ui.add(slider).on_hover_text("acceleration of gravity; more than the slider has can be typed");
+        let hint = "acceleration of gravity; more than the slider has can be typed";
+        let slid = Slid { number: 110.0, ..Slid::new(0.0..=MOST, false) };
+        let (response, new) = Entry::positive("m/s2", 1.0, hint).slider(ui, gravity.length(), &slid);
         desk.probes.mark("gravity", &response);
-        if response.changed() && g.is_finite() {
+        if let Some(g) = new {
             self.set_gravity(desk, direction * g);
         }
         ui.horizontal(|ui| {
@@ -101,12 +96,12 @@ impl Forces {
     fn medium(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         let settings = desk.report().sides[0].numbers.settings.clone();
         ui.label("Viscosity");
-        let mut viscosity = self.viscosity.shown(settings.viscosity, Instant::now());
+        let viscosity = self.viscosity.shown(settings.viscosity, Instant::now());
         let hint = "0 void to 1 very tough: velocity relaxes to that of the medium as (1 - viscosity)^(t / 1 s)";
-        let slider = egui::Slider::new(&mut viscosity, 0.0..=1.0).custom_formatter(|x, _| number(x));
-        let response = ui.add(slider).on_hover_text(hint);
+        let entry = Entry { range: 0.0..=1.0, ..Entry::any("", 0.2, hint) };
+        let (response, new) = entry.slider(ui, viscosity, &Slid::new(0.0..=1.0, false));
         desk.probes.mark("viscosity", &response);
-        if response.changed() {
+        if let Some(viscosity) = new {
             self.viscosity.ask(viscosity, Instant::now());
             self.set(desk, move |s| s.viscosity = viscosity);
         }
@@ -219,7 +214,10 @@ fn parameters(ui: &mut egui::Ui, field: &Field, size: Real) -> Option<Field> {
             scalar(ui, "strength", &Entry::any(&unit, *strength, hint), strength, &mut changed);
             ui.label("exponent");
             let hint = "2: gravitation of a point; -1: a spring";
-            changed |= ui.add(egui::DragValue::new(exponent).range(-16..=16).speed(0.05)).on_hover_text(hint).changed();
+            let entry = Entry { range: -16.0..=16.0, whole: true, ..Entry::any("", 10.0, hint) };
+            if let Some(x) = entry.show(ui, f64::from(*exponent)) {
+                (*exponent, changed) = (x as i32, true);
+            }
             ui.end_row();
         }
         Field::Force(ForceKind::Vortex { point, axis, strength }) => {

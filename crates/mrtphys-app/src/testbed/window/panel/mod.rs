@@ -170,16 +170,3 @@ impl Panel {
         }
     }
 }
-
-/// A slider as wide as the panel allows, with its number at the right.
-pub fn slider(ui: &mut egui::Ui, slider: egui::Slider<'_>) -> egui::Response {
-    // Room for the number with its unit.
-    const NUMBER: f32 = 58.0;
-    ui.scope(|ui| {
-        let gap = ui.spacing().item_spacing.x;
-        ui.spacing_mut().interact_size.x = NUMBER;
-        ui.spacing_mut().slider_width = (ui.available_width() - NUMBER - gap).max(40.0);
-        ui.add(slider)
-    })
-    .inner
-}

@@ -2,6 +2,7 @@
 
 use crate::testbed::window::action::Action;
 use crate::testbed::window::desk::Desk;
+use crate::testbed::window::typed::Typed;
 use eframe::egui;
 use mrtphys_view::mesh::FINEST;
 use mrtphys_view::{Illumination, Mode, Quality, Theme};
@@ -129,14 +130,7 @@ impl Render {
             illumination(ui, &mut desk.look.illumination);
             ui.end_row();
             ui.label("Triangulation").on_hover_text("how finely spheres are triangulated");
-            let mut slider = place(desk.look.quality);
-            let widget = egui::Slider::new(&mut slider, 0..=FINEST + 1)
-                .custom_formatter(|x, _| meaning(x as u8))
-                .custom_parser(|text| place_of(text).map(f64::from));
-            let hint = "automatic: as finely as its size in the picture needs to look round; else all spheres alike";
-            if ui.add(widget).on_hover_text(hint).changed() {
-                desk.look.quality = quality(slider);
-            }
+            triangulation(ui, &mut desk.look.quality);
             ui.end_row();
             ui.label("Background").on_hover_text("light or dark (T)");
             ui.horizontal(|ui| {
@@ -159,6 +153,36 @@ impl Render {
         });
         smoothing(ui, &mut desk.look.smooth);
     }
+}
+
+fn triangulation(ui: &mut egui::Ui, chosen: &mut Quality) {
+    let mut slid = place(*chosen);
+    let hint = "automatic: as finely as its size in the picture needs to look round; else all spheres alike";
+    let read = |text: &str| {
+        let place = place_of(text).ok_or("A number of triangles is expected, or 'automatic'")?;
+        Ok(f64::from(place))
+    };
+    ui.horizontal(|ui| {
+        ui.spacing_mut().slider_width = 80.0;
+        let slider = egui::Slider::new(&mut slid, 0..=FINEST + 1).show_value(false);
+        let mut changed = ui.add(slider).on_hover_text(hint).changed();
+        let typed = Typed {
+            shown: &|x| meaning(x as u8),
+            read: &read,
+            range: 0.0..=f64::from(FINEST + 1),
+            speed: 0.05,
+            width: None,
+            suffix: String::new(),
+            hint,
+            exact: String::new(),
+        };
+        if let Some(new) = typed.show(ui, f64::from(slid)).1 {
+            (slid, changed) = (new.round() as u8, true);
+        }
+        if changed {
+            *chosen = quality(slid);
+        }
+    });
 }
 
 fn illumination(ui: &mut egui::Ui, value: &mut Illumination) {
