@@ -32,6 +32,7 @@ mod export;
 mod files;
 mod gallery;
 mod help;
+mod leaving;
 mod messages;
 mod trouble;
 

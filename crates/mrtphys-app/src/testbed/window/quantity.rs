@@ -9,7 +9,7 @@ use std::ops::RangeInclusive;
 /// Digits that are shown in vectors.
 const FEWER_DIGITS: usize = 4;
 /// Width of a component of a vector \[points\].
-const COMPONENT: f32 = 62.0;
+const COMPONENT: f32 = 64.0;
 
 /// Reads a number as people write it: `1/64`, `2.5`, `3e-4`, with a comma for the point, with the unit (`12 mm` for a
 /// value in m) or without.

@@ -173,3 +173,102 @@ fn say(ui: &egui::Ui, response: &egui::Response, why: &str) {
         ui.weak("Escape leaves the number as it was.");
     });
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testbed::window::quantity::read;
+    use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2};
+
+    /// A field from 0 to 10 in a window without a screen.
+    struct Window {
+        context: egui::Context,
+        value: f64,
+        at: Pos2,
+    }
+
+    impl Window {
+        fn new() -> Window {
+            let mut window = Window { context: egui::Context::default(), value: 3.0, at: Pos2::ZERO };
+            window.show(Vec::new());
+            window
+        }
+
+        fn show(&mut self, events: Vec<Event>) {
+            let (value, mut seen) = (self.value, None);
+            let input = egui::RawInput { events, ..egui::RawInput::default() };
+            let mut output = self.context.run_ui(input, |ui| {
+                let typed = Typed {
+                    shown: &|x| x.to_string(),
+                    read: &|text| read(text, "m", false),
+                    range: 0.0..=10.0,
+                    speed: 1.0,
+                    width: None,
+                    suffix: " m".into(),
+                    hint: "length",
+                    exact: String::new(),
+                };
+                seen = Some(typed.show(ui, value));
+            });
+            output.textures_delta.clear();
+            let (response, new) = seen.unwrap();
+            self.at = response.rect.center();
+            self.value = new.unwrap_or(value);
+        }
+
+        fn key(&mut self, key: Key) {
+            let event =
+                |pressed| Event::Key { key, physical_key: None, pressed, repeat: false, modifiers: Modifiers::NONE };
+            self.show(vec![event(true)]);
+            self.show(vec![event(false)]);
+            self.show(Vec::new());
+        }
+
+        fn type_anew(&mut self, text: &str) {
+            let (pos, button, modifiers) = (self.at, PointerButton::Primary, Modifiers::NONE);
+            for pressed in [true, false] {
+                let click = Event::PointerButton { pos, button, pressed, modifiers };
+                self.show(vec![Event::PointerMoved(pos), click]);
+            }
+            self.show(Vec::new());
+            self.show(vec![Event::Text(text.into())]);
+        }
+    }
+
+    #[test]
+    fn what_can_be_read_is_taken() {
+        let mut window = Window::new();
+        window.type_anew("1/4");
+        assert_eq!(window.value, 3.0, "not before Enter");
+        window.key(Key::Enter);
+        assert_eq!(window.value, 0.25);
+    }
+
+    #[test]
+    fn what_cannot_be_taken_is_kept_to_be_mended() {
+        for (wrong, right) in [("4x", 4.0), ("7 s", 7.0), ("100", 10.0)] {
+            let mut window = Window::new();
+            window.type_anew(wrong);
+            window.key(Key::Enter);
+            assert_eq!(window.value, 3.0, "{wrong}");
+            // The text is still there with the keyboard in it: its last letter goes.
+            window.key(Key::Backspace);
+            window.key(Key::Enter);
+            assert_eq!(window.value, right, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn escape_gives_it_up() {
+        let mut window = Window::new();
+        window.type_anew("4x");
+        window.key(Key::Enter);
+        window.key(Key::Escape);
+        window.key(Key::Backspace);
+        window.key(Key::Enter);
+        assert_eq!(window.value, 3.0);
+        window.type_anew("5");
+        window.key(Key::Enter);
+        assert_eq!(window.value, 5.0);
+    }
+}

@@ -235,7 +235,7 @@ impl Form {
                 desk.probes.mark("add-body", &added);
                 if added.clicked() {
                     self.changed = Some(desk.report().troubles);
-                    desk.session.edit(true, move |loaded| making::add(loaded, &pattern, near).map(drop));
+                    desk.edit(true, move |loaded| making::add(loaded, &pattern, near).map(drop));
                 }
                 let hint =
                     "shoots the body from the eye along the middle line of sight, from where that enters the walls (B)";

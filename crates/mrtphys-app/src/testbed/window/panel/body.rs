@@ -66,7 +66,7 @@ impl Body {
     /// Changes the world, and remembers when.
     fn edit(&mut self, desk: &Desk, looks: bool, change: impl Fn(&mut World) -> mrtphys::Result<()> + Send + 'static) {
         self.changed = Some(desk.report().troubles);
-        desk.session.edit(looks, move |loaded| change(&mut loaded.world).map_err(|e| e.to_string()));
+        desk.edit(looks, move |loaded| change(&mut loaded.world).map_err(|e| e.to_string()));
     }
 
     /// What was wrong with the last change.
@@ -203,7 +203,7 @@ impl Body {
             let hint = "color in the picture; in a lattice, of all bodies of the same kind";
             if ui.color_edit_button_srgb(&mut rgb).on_hover_text(hint).changed() {
                 self.changed = Some(desk.report().troubles);
-                desk.session.edit(true, move |loaded| making::paint(loaded, id, rgb));
+                desk.edit(true, move |loaded| making::paint(loaded, id, rgb));
             }
             ui.checkbox(&mut desk.seeing.follow, "Follow").on_hover_text("the camera moves with this body (L)");
             let trails = &mut desk.seeing.sight;
@@ -222,7 +222,7 @@ impl Body {
             }
             if ui.button("Duplicate").on_hover_text("another body like this one, beside it").clicked() {
                 self.changed = Some(desk.report().troubles);
-                desk.session.edit(true, move |loaded| making::duplicate(loaded, id).map(drop));
+                desk.edit(true, move |loaded| making::duplicate(loaded, id).map(drop));
             }
             if ui.button("Delete").on_hover_text("removes this body (Delete)").clicked() {
                 self.edit(desk, true, move |w| w.remove_body(id));

@@ -1,6 +1,7 @@
 //! Section Forces (thesis, appendix B.2): gravity and viscosity, and all other force and flow fields.
 
 use super::fields::{self, Field, Placed, STANDARD};
+use super::scope;
 use crate::testbed::window::ask::Inquiry;
 use crate::testbed::window::desk::Desk;
 use crate::testbed::window::pending::Pending;
@@ -51,6 +52,16 @@ impl Forces {
     ) {
         self.changed = Some(desk.report().troubles);
         desk.session.edit(false, change);
+    }
+
+    /// Changes what would have to be made again if it were not saved.
+    fn make(
+        &mut self,
+        desk: &Desk,
+        change: impl Fn(&mut mrtphys_scene::Loaded) -> Result<(), String> + Send + 'static,
+    ) {
+        self.changed = Some(desk.report().troubles);
+        desk.edit(false, change);
     }
 
     fn set_gravity(&mut self, desk: &Desk, gravity: Vec3) {
@@ -159,17 +170,18 @@ impl Forces {
             ui.push_id((is_flow, placed.number), |ui| {
                 ui.horizontal(|ui| {
                     ui.strong(placed.field.name());
-                    if !placed.scope.is_empty() {
-                        ui.weak("(scope)").on_hover_text(&placed.scope);
-                    }
                     if ui.small_button("Remove").on_hover_text("takes this field away").clicked() {
                         let Placed { number, field, .. } = *placed;
-                        self.edit(desk, move |loaded| fields::remove(loaded, number, &field));
+                        self.make(desk, move |loaded| fields::remove(loaded, number, &field));
                     }
                 });
+                if let Some(new) = scope::show(ui, desk, placed) {
+                    let Placed { number, field, .. } = *placed;
+                    self.make(desk, move |loaded| scope::set(loaded, number, &field, &new));
+                }
                 if let Some(field) = parameters(ui, &placed.field, size) {
                     let number = placed.number;
-                    self.edit(desk, move |loaded| fields::set(loaded, number, field));
+                    self.make(desk, move |loaded| fields::set(loaded, number, field));
                 }
             });
         }
@@ -178,7 +190,7 @@ impl Forces {
             ui.menu_button("Add a field", |ui| {
                 for field in Field::choices(at, size) {
                     if ui.button(field.name()).on_hover_text("at the point that the camera looks at").clicked() {
-                        self.edit(desk, move |loaded| fields::add(loaded, field));
+                        self.make(desk, move |loaded| fields::add(loaded, field));
                         ui.close();
                     }
                 }

@@ -13,6 +13,7 @@ mod making;
 mod overlays;
 mod plots;
 mod render;
+mod scope;
 mod stages;
 
 use super::desk::Desk;
