@@ -76,6 +76,8 @@ impl Leaving {
                 }
             });
         });
+        // The dialog itself knows that it is in front from its second picture on only.
+        stays |= context.input(|i| i.key_pressed(egui::Key::Escape));
         if answer.is_some() || stays || modal.should_close() {
             self.wanted = None;
         }
