@@ -88,7 +88,7 @@ impl Chosen {
 }
 
 /// Splits at commas that are not within brackets: `lattice0[0,1,2]` is one name.
-fn split_names(list: &str) -> Vec<&str> {
+pub fn split_names(list: &str) -> Vec<&str> {
     let mut depth = 0usize;
     let at_comma = move |c: char| {
         match c {

@@ -209,7 +209,69 @@ fn a_film_is_made_from_the_recording() {
         Ok(probe) => assert_eq!(String::from_utf8_lossy(&probe.stdout).trim(), "1280,720,6"),
         Err(e) => eprintln!("SKIPPED the count of the film's pictures: ffprobe: {e}"),
     }
+    a_film_as_mp4(&mut window, &folder);
     assert!(folder.files().iter().all(|f| !f.contains(".part")), "nothing half is left");
+}
+
+/// The same film once more, for players of films.
+fn a_film_as_mp4(window: &mut Window<'_>, folder: &Folder) {
+    window.keys(&["ctrl+m"]);
+    window.click_until("film.mp4", 0.5, |s| s["says"]["film.format"] == "mp4");
+    window.click("film.save");
+    window.name_file("second");
+    window.until("the second film", |s| {
+        s["busy"] == 0
+            && s["messages"]
+                .as_array()
+                .is_some_and(|m| m.iter().any(|m| m.to_string().contains("second.mp4: 6 pictures")))
+    });
+    let film = std::fs::read(folder.path("second.mp4")).unwrap();
+    assert_eq!(&film[4..8], b"ftyp");
+    let shown = "stream=codec_name,pix_fmt,width,height,r_frame_rate,nb_read_frames";
+    let probe = Command::new("ffprobe")
+        .args(["-v", "error", "-count_frames", "-show_entries", shown, "-of", "csv=p=0"])
+        .arg(folder.path("second.mp4"))
+        .output();
+    match probe {
+        Ok(probe) => {
+            assert_eq!(String::from_utf8_lossy(&probe.stderr), "", "no picture is damaged");
+            assert_eq!(String::from_utf8_lossy(&probe.stdout).trim(), "h264,1280,720,yuv420p,30/1,6");
+        }
+        Err(e) => eprintln!("SKIPPED what is in the film: ffprobe: {e}"),
+    }
+}
+
+#[test]
+fn it_asks_before_changes_by_hand_are_lost() {
+    if !can_open("it_asks_before_changes_by_hand_are_lost") {
+        return;
+    }
+    let folder = Folder::with_scenes("testbed-leaving");
+    let ball = "format = 1\n[[body]]\nshape = { kind = \"sphere\", radius = 1 }\n";
+    folder.put("ball.toml", ball);
+    let mut window = Window::open(&folder, "ball.toml --paused");
+    let asks = |s: &Value| s["windows"].as_array().is_some_and(|w| w.contains(&"leaving".into()));
+    assert_eq!(window.still_at(0)["bodies"], 1);
+    // Into the middle of the picture, where the ball is: its section is opened at the right.
+    window.click("viewport");
+    window.until("a selected body", |s| s["widgets"]["body"].is_array());
+    window.keys(&["Delete"]);
+    window.until("no body", |s| s["bodies"] == 0);
+    window.keys(&["ctrl+q"]);
+    window.until("the question", asks);
+    window.keys(&["Escape"]);
+    window.until("no question", |s| !asks(s));
+    // What is saved is not lost: it ends without a word.
+    window.keys(&["ctrl+q"]);
+    window.until("the question", asks);
+    window.click("leaving.save");
+    window.name_file("saved");
+    window.until("the file", |s| {
+        s["messages"].as_array().is_some_and(|m| m.iter().any(|m| m.to_string().contains("saved")))
+    });
+    window.keys(&["ctrl+q"]);
+    window.ends();
+    assert!(folder.files().iter().any(|f| f == "saved.toml"));
 }
 
 #[test]

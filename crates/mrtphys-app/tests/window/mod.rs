@@ -98,6 +98,20 @@ impl<'a> Window<'a> {
         serde_json::from_str(&text).unwrap_or_default()
     }
 
+    /// Waits until the program has ended, and well.
+    #[track_caller]
+    pub fn ends(&mut self) {
+        let start = Instant::now();
+        loop {
+            if let Some(status) = self.program.0.try_wait().unwrap() {
+                assert!(status.success(), "{status}:\n{}", self.folder.text("stderr.txt"));
+                return;
+            }
+            assert!(start.elapsed() < PATIENCE, "waited in vain for the end");
+            std::thread::sleep(Duration::from_millis(30));
+        }
+    }
+
     /// Waits until the panel says something.
     #[track_caller]
     pub fn until(&mut self, what: &str, says: impl Fn(&Value) -> bool) -> Value {

@@ -7,6 +7,7 @@ use super::files::{Files, Purpose};
 use super::gallery::Gallery;
 use super::help::Help;
 use super::jobs::Jobs;
+use super::leaving::{Answer, Leaving, losses};
 use super::messages::Messages;
 use super::opening::{Changes, Opened, Opening, Origin, Watch};
 use super::panel::Panel;
@@ -58,6 +59,11 @@ pub struct Testbed {
     /// of the scene that the program was started with
     changes: Option<(Origin, Changes)>,
     opening: Option<Opening>,
+    leaving: Leaving,
+    /// the window may close
+    may_close: bool,
+    /// a text or a number was being typed in the last picture
+    typing: bool,
     watch: Watch,
     status: Option<Status>,
     going: Pending<bool>,
@@ -110,6 +116,9 @@ impl Testbed {
             changes: begin.changes.map(|c| (begin.origin.clone(), c)),
             origin: begin.origin,
             opening: None,
+            leaving: Leaving::default(),
+            may_close: false,
+            typing: false,
             watch,
             status: begin.status.map(Status::new),
             going: Pending::default(),
@@ -213,6 +222,14 @@ impl Testbed {
             Action::Restart => self.desk.send(Command::Restart),
             Action::First => self.desk.send(Command::Seek(self.desk.report().timeline.first)),
             Action::Last => self.desk.send(Command::Seek(self.desk.report().timeline.last)),
+            Action::Open(_) | Action::OpenGallery(_) if self.desk.is_unsaved() => self.leaving.ask(action),
+            other => self.open(context, other),
+        }
+    }
+
+    /// What concerns files.
+    fn open(&mut self, context: &egui::Context, action: Action) {
+        match action {
             Action::OpenFile => self.files.ask(Purpose::Open, "", self.desk.path.as_deref()),
             Action::Open(path) => match super::files::sort_of(&path) {
                 super::files::Sort::Snapshot => save::go_on(&self.desk, path),
@@ -260,19 +277,26 @@ impl Testbed {
             Action::Scale(steps) => self.preferences.rescale(steps),
             Action::Help => self.help.open = !self.help.open,
             Action::About => self.help.about = !self.help.about,
-            Action::Quit => context.send_viewport_cmd(egui::ViewportCommand::Close),
+            Action::Quit if self.may_close => context.send_viewport_cmd(egui::ViewportCommand::Close),
+            // It is asked, unless nothing would be lost.
+            Action::Quit => self.leaving.ask(Action::Quit),
             _ => {}
         }
     }
 
-    /// Escape closes the foremost of the windows.
-    fn escape(&mut self, context: &egui::Context) {
-        if self.files.is_open() || !context.input(|i| i.key_pressed(egui::Key::Escape)) {
-            return;
+    /// Whether something has to be answered before anything else.
+    fn is_asking(&self) -> bool {
+        self.files.is_open() || self.leaving.is_open()
+    }
+
+    /// Escape closes the foremost of the windows. Whether there was one.
+    fn escape(&mut self, context: &egui::Context) -> bool {
+        if !context.input(|i| i.key_pressed(egui::Key::Escape)) {
+            return false;
         }
         if self.trouble.origin().is_some() {
             self.trouble.clear();
-            return;
+            return true;
         }
         let windows = [
             &mut self.help.about,
@@ -281,8 +305,26 @@ impl Testbed {
             &mut self.export.picture,
             &mut self.gallery.open,
         ];
-        if let Some(open) = windows.into_iter().find(|open| **open) {
-            *open = false;
+        let foremost = windows.into_iter().find(|open| **open);
+        foremost.map(|open| *open = false).is_some()
+    }
+
+    /// Asks before something is lost.
+    fn ask_before_leaving(&mut self, context: &egui::Context) {
+        let losses = losses(self.desk.is_unsaved(), self.jobs.count());
+        let closes = context.input(|i| i.viewport().close_requested());
+        if closes && !self.may_close && !losses.is_empty() {
+            context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.leaving.ask(Action::Quit);
+        }
+        match self.leaving.show(context, &mut self.desk.probes, &losses) {
+            Some(Answer::Go(Action::Quit)) => {
+                self.may_close = true;
+                self.desk.actions.push(Action::Quit);
+            }
+            Some(Answer::Go(action)) => self.open(context, action),
+            Some(Answer::Save) => self.desk.actions.push(Action::SaveScene),
+            None => {}
         }
     }
 
@@ -308,8 +350,8 @@ impl Testbed {
         egui::Panel::bottom("transport").exact_size(38.0).show(ui, |ui| self.transport.show(ui, &mut self.desk));
         if self.side_panel {
             egui::Panel::right("panel")
-                .default_size(300.0)
-                .size_range(290.0..=520.0)
+                .default_size(320.0)
+                .size_range(310.0..=520.0)
                 .show(ui, |ui| self.panel.show(ui, &mut self.desk));
         }
         if self.below && self.panel.has_below() {
@@ -363,6 +405,7 @@ impl Testbed {
             ("picture", self.export.picture),
             ("film", self.export.film),
             ("files", self.files.is_open()),
+            ("leaving", self.leaving.is_open()),
             ("trouble", self.trouble.origin().is_some()),
         ];
         let beside = Beside {
@@ -387,11 +430,14 @@ impl eframe::App for Testbed {
         let context = ui.ctx().clone();
         self.desk.begin();
         self.take_news(&context);
-        let pressed = if self.files.is_open() { Vec::new() } else { keys::pressed(&context) };
+        let pressed = if self.is_asking() { Vec::new() } else { keys::pressed(&context) };
         self.desk.actions.extend(pressed);
-        self.escape(&context);
+        // While something is typed, Escape ends that.
+        let taken = self.typing || self.is_asking();
+        self.desk.keys_taken = taken || self.escape(&context);
         self.lay_out(ui, frame);
         self.float(&context);
+        self.ask_before_leaving(&context);
         for action in std::mem::take(&mut self.desk.actions) {
             self.act(&context, action);
         }
@@ -399,6 +445,7 @@ impl eframe::App for Testbed {
         self.name_window(&context);
         self.desk.end();
         self.write_status(&context);
+        self.typing = context.text_edit_focused();
         if self.messages.will_change() {
             context.request_repaint_after(Duration::from_secs(1));
         }

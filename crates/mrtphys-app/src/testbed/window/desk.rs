@@ -7,9 +7,12 @@ use super::seeing::Seeing;
 use crate::testbed::session::{Command, Report, Session, Wish};
 use eframe::egui;
 use mrtphys::BodyId;
-use mrtphys_scene::{Diagnostics, Scene};
+use mrtphys_scene::{Diagnostics, Loaded, Scene};
 use mrtphys_view::{Camera, Look};
+use std::cell::Cell;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// The state of the window that is not one part's own.
 pub struct Desk {
@@ -35,12 +38,18 @@ pub struct Desk {
     pub opened: u64,
     /// what is to be said to the user; shown until it is dismissed
     pub messages: Vec<Message>,
+    /// whether the keys pressed now are somebody else's than the picture's: a question is open, or a number was being typed
+    pub keys_taken: bool,
     /// where named controls are
     pub probes: Probes,
     /// what happened since the scene was opened, for plots
     pub trace: Trace,
     /// what was wished for last
     sent: Wish,
+    /// changes by hand since the scene was opened
+    changes: Cell<u64>,
+    /// how many of them are saved: set by whoever has written the scene
+    saved: Arc<AtomicU64>,
 }
 
 /// Something to be said.
@@ -68,9 +77,12 @@ impl Desk {
             actions: Vec::new(),
             opened: 0,
             messages: Vec::new(),
+            keys_taken: false,
             probes: Probes::default(),
             trace: Trace::default(),
             sent: Wish::default(),
+            changes: Cell::default(),
+            saved: Arc::default(),
         }
     }
 
@@ -83,6 +95,7 @@ impl Desk {
         (self.name, self.path, self.selected) = (name, path, None);
         (self.sent, self.opened) = (Wish::default(), self.opened + 1);
         self.trace.clear();
+        (self.changes, self.saved) = (Cell::default(), Arc::default());
     }
 
     /// The newest report.
@@ -93,6 +106,26 @@ impl Desk {
     /// Steers the session.
     pub fn send(&self, command: Command) {
         self.session.send(command);
+    }
+
+    /// Changes bodies or fields by hand: what would have to be made again if it were not saved. `structural` as for
+    /// [`Session::edit`].
+    pub fn edit(&self, structural: bool, change: impl Fn(&mut Loaded) -> Result<(), String> + Send + 'static) {
+        self.changes.set(self.changes.get() + 1);
+        self.session.edit(structural, change);
+    }
+
+    /// Whether there are changes by hand that are not saved.
+    pub fn is_unsaved(&self) -> bool {
+        self.saved.load(Relaxed) < self.changes.get()
+    }
+
+    /// To be called when the present state has been written: what was changed until now is saved.
+    pub fn when_saved(&self) -> impl FnOnce() + Send + 'static {
+        let (changes, saved) = (self.changes.get(), self.saved.clone());
+        move || {
+            saved.fetch_max(changes, Relaxed);
+        }
     }
 
     /// Before the parts are shown: takes the newest report, and forgets what the last picture asked for.

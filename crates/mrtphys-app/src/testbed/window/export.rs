@@ -4,6 +4,7 @@ use super::desk::Desk;
 use super::drawing::View;
 use super::files::Purpose;
 use super::format::{brief, count};
+use super::quantity::Entry;
 use super::reel::{FILM_KINDS, MOST_PICTURES, Take};
 use crate::testbed::session::Command;
 use eframe::egui;
@@ -167,20 +168,21 @@ impl Export {
             ui.end_row();
             size(ui, &mut self.size, window);
             ui.label("Pictures per second").on_hover_text("Of the film [1/s]. The simulation is not changed");
-            ui.add(egui::DragValue::new(&mut self.fps).range(1..=240)).on_hover_text("Of the film [1/s]");
+            Entry::whole("", 1..=240, "Of the film [1/s]").count(ui, &mut self.fps);
             ui.end_row();
             let hint = "Simulated seconds per second of the film: 0.1 is slow motion";
             ui.label("Speed").on_hover_text(hint);
-            let speed = egui::DragValue::new(&mut self.speed).range(1e-3..=1e3).speed(0.01).suffix(" \u{d7}");
-            ui.add(speed).on_hover_text(hint);
+            let entry = Entry { range: 1e-3..=1e3, ..Entry::any("\u{d7}", 1.0, hint) };
+            self.speed = entry.show(ui, self.speed).unwrap_or(self.speed);
             ui.end_row();
-            ui.label("From").on_hover_text("Simulated time of the first picture [s]");
-            let step = ((last - first) / 200.0).max(1e-6);
-            ui.add(egui::DragValue::new(&mut from).range(first..=last).speed(step).suffix(" s").max_decimals(4));
-            ui.end_row();
-            ui.label("To").on_hover_text("Simulated time of the end [s]");
-            ui.add(egui::DragValue::new(&mut to).range(from..=last).speed(step).suffix(" s").max_decimals(4));
-            ui.end_row();
+            let mut time = |label: &str, hint: &str, range: std::ops::RangeInclusive<f64>, t: &mut f64| {
+                ui.label(label).on_hover_text(hint);
+                let entry = Entry { range, ..Entry::any("s", last - first, hint) };
+                *t = entry.show(ui, *t).unwrap_or(*t);
+                ui.end_row();
+            };
+            time("From", "Simulated time of the first picture", first..=last, &mut from);
+            time("To", "Simulated time of the end", from..=last, &mut to);
             if self.rival.0 {
                 ui.label("Rival");
                 ui.checkbox(&mut self.rival.1, "beside the world")
@@ -236,9 +238,9 @@ fn first_kind() -> usize {
 fn size(ui: &mut egui::Ui, size: &mut (u32, u32), window: (u32, u32)) {
     ui.label("Size").on_hover_text("Width and height [pixels]");
     ui.horizontal(|ui| {
-        ui.add(egui::DragValue::new(&mut size.0).range(1..=LARGEST)).on_hover_text("Width [pixels]");
+        Entry::whole("", 1..=LARGEST, "Width [pixels]").count(ui, &mut size.0);
         ui.label("\u{d7}");
-        ui.add(egui::DragValue::new(&mut size.1).range(1..=LARGEST)).on_hover_text("Height [pixels]");
+        Entry::whole("", 1..=LARGEST, "Height [pixels]").count(ui, &mut size.1);
         egui::ComboBox::from_id_salt("size").selected_text("choose").width(84.0).show_ui(ui, |ui| {
             ui.selectable_value(size, window, format!("as in the window: {} \u{d7} {}", window.0, window.1));
             for (w, h) in SIZES {

@@ -11,6 +11,7 @@ mod probe;
 mod quantity;
 mod seeing;
 mod table;
+mod typed;
 
 // The parts that stand still.
 mod menu;
@@ -31,6 +32,7 @@ mod export;
 mod files;
 mod gallery;
 mod help;
+mod leaving;
 mod messages;
 mod trouble;
 

@@ -1,6 +1,7 @@
 //! Numbers as people write them: read, and entered.
 
 use super::format::{DIGITS, rounded, with_unit};
+use super::typed::Typed;
 use eframe::egui;
 use mrtphys::Vec3;
 use std::ops::RangeInclusive;
@@ -8,7 +9,7 @@ use std::ops::RangeInclusive;
 /// Digits that are shown in vectors.
 const FEWER_DIGITS: usize = 4;
 /// Width of a component of a vector \[points\].
-const COMPONENT: f32 = 62.0;
+const COMPONENT: f32 = 64.0;
 
 /// Reads a number as people write it: `1/64`, `2.5`, `3e-4`, with a comma for the point, with the unit (`12 mm` for a
 /// value in m) or without.
@@ -43,7 +44,7 @@ fn end_of_number(text: &str) -> usize {
 
 /// What a written unit is in terms of the value's own: prefixes before the same unit.
 fn factor_of(written: &str, unit: &str) -> Option<f64> {
-    if written.is_empty() || written == unit {
+    if written.is_empty() || written == unit || (written == "x" && unit == "\u{d7}") {
         return Some(1.0);
     }
     // kg has its prefix already.
@@ -72,6 +73,33 @@ fn factor_of(written: &str, unit: &str) -> Option<f64> {
     }
 }
 
+/// What a text means, or what was expected: for a person who typed it.
+///
+/// # Errors
+/// It is no number, or none that can be computed with.
+pub fn read(text: &str, unit: &str, whole: bool) -> Result<f64, String> {
+    let x = parse(text, unit).ok_or_else(|| {
+        let plain = text.trim().parse::<f64>();
+        match plain {
+            Ok(x) if x.is_infinite() => format!("At most {:.1e} can be computed with", f64::MAX),
+            _ => expected(unit, whole),
+        }
+    })?;
+    if whole && x.fract() != 0.0 { Err(expected(unit, whole)) } else { Ok(x) }
+}
+
+fn expected(unit: &str, whole: bool) -> String {
+    let what = if whole { "A whole number" } else { "A number" };
+    let example = match (whole, unit) {
+        (true, _) => "",
+        (_, "m") => ", such as 2.5, 1/64, 3e-4 or 12 mm,",
+        (_, "kg") => ", such as 2.5, 1/64, 3e-4 or 12 g,",
+        _ => ", such as 2.5, 1/64 or 3e-4,",
+    };
+    let unit = if unit.is_empty() { String::new() } else { format!(" in {unit}") };
+    format!("{what}{unit}{example} is expected")
+}
+
 /// How a value is entered.
 #[derive(Clone, Debug)]
 pub struct Entry<'a> {
@@ -81,6 +109,8 @@ pub struct Entry<'a> {
     pub scale: f64,
     /// what there may be
     pub range: RangeInclusive<f64>,
+    /// whether it has no fraction
+    pub whole: bool,
     /// what it is
     pub hint: &'a str,
 }
@@ -88,12 +118,19 @@ pub struct Entry<'a> {
 impl<'a> Entry<'a> {
     /// Any number.
     pub fn any(unit: &'a str, scale: f64, hint: &'a str) -> Entry<'a> {
-        Entry { unit, scale, range: f64::NEG_INFINITY..=f64::INFINITY, hint }
+        Entry { unit, scale, range: f64::NEG_INFINITY..=f64::INFINITY, whole: false, hint }
     }
 
     /// Numbers from zero on.
     pub fn positive(unit: &'a str, scale: f64, hint: &'a str) -> Entry<'a> {
         Entry { range: 0.0..=f64::INFINITY, ..Entry::any(unit, scale, hint) }
+    }
+
+    /// Whole numbers.
+    pub fn whole(unit: &'a str, range: RangeInclusive<u32>, hint: &'a str) -> Entry<'a> {
+        let range = f64::from(*range.start())..=f64::from(*range.end());
+        // A whole number changes by one within a few points of dragging.
+        Entry { whole: true, range, ..Entry::any(unit, 20.0, hint) }
     }
 
     /// Shows the value and lets it be dragged or typed; what is typed holds from Enter on. The new value, if it was
@@ -102,29 +139,62 @@ impl<'a> Entry<'a> {
         self.widget(ui, value, (DIGITS, None), self.hint)
     }
 
+    /// As [`show`](Entry::show), for whole numbers.
+    pub fn count(&self, ui: &mut egui::Ui, value: &mut u32) -> bool {
+        let new = self.show(ui, f64::from(*value));
+        new.map(|x| *value = x as u32).is_some()
+    }
+
+    /// A slider that fills the line, with the number at its right, which may be beyond the slider's ends. The new value, if
+    /// it was changed.
+    pub fn slider(&self, ui: &mut egui::Ui, value: f64, slid: &Slid) -> (egui::Response, Option<f64>) {
+        let mut slid_to = value;
+        let mut slider = egui::Slider::new(&mut slid_to, slid.range.clone())
+            .logarithmic(slid.logarithmic)
+            .clamping(egui::SliderClamping::Edits)
+            .show_value(false);
+        if self.whole {
+            slider = slider.integer();
+        }
+        let (response, typed) = ui
+            .horizontal(|ui| {
+                let gap = ui.spacing().item_spacing.x;
+                ui.spacing_mut().slider_width = (ui.available_width() - slid.number - gap).max(40.0);
+                let response = ui.add(slider).on_hover_text(self.hint);
+                let typed = ui.scope(|ui| {
+                    ui.spacing_mut().interact_size.x = slid.number;
+                    self.show(ui, value)
+                });
+                (response, typed.inner)
+            })
+            .inner;
+        let new = typed.or(response.changed().then_some(slid_to));
+        (response, new)
+    }
+
+    /// As [`slider`](Entry::slider), for whole numbers.
+    pub fn count_slider(&self, ui: &mut egui::Ui, value: &mut u32, slid: &Slid) -> (egui::Response, bool) {
+        let (response, new) = self.slider(ui, f64::from(*value), slid);
+        (response, new.map(|x| *value = x as u32).is_some())
+    }
+
     fn widget(&self, ui: &mut egui::Ui, value: f64, (digits, width): (usize, Option<f32>), hint: &str) -> Option<f64> {
-        let mut new = value;
         let unit = self.unit;
         let speed = (value.abs() * 0.01).max(self.scale.abs() * 0.005);
-        let drag = egui::DragValue::new(&mut new)
-            .speed(if speed.is_finite() { speed } else { self.scale })
-            .range(self.range.clone())
-            .clamp_existing_to_range(false)
-            .update_while_editing(false)
-            .custom_formatter(move |x, _| rounded(x, digits))
-            .custom_parser(move |text| parse(text, unit));
-        let response = match width {
-            // A number that gets longer must not push the panel about.
-            Some(width) => ui.add_sized([width, ui.spacing().interact_size.y], drag.clip_text(true)),
-            None if unit.is_empty() => ui.add(drag),
-            None => ui.add(drag.suffix(format!(" {unit}"))),
+        let typed = Typed {
+            shown: &|x| if self.whole { format!("{x:.0}") } else { rounded(x, digits) },
+            read: &|text| read(text, unit, self.whole),
+            range: self.range.clone(),
+            speed: if speed.is_finite() { speed } else { self.scale },
+            width,
+            suffix: if unit.is_empty() { String::new() } else { format!(" {unit}") },
+            hint,
+            exact: with_unit(value, unit),
         };
-        let changed = response.changed();
-        response.on_hover_ui(|ui| {
-            ui.set_max_width(320.0);
-            ui.label(format!("{hint}\n{}", with_unit(value, unit)));
-        });
-        (changed && rounded(new, digits) != rounded(value, digits)).then_some(new)
+        let new = typed.show(ui, value).1?;
+        let new = if self.whole { new.round() } else { new };
+        let same = if self.whole { new == value } else { rounded(new, digits) == rounded(value, digits) };
+        (!same).then_some(new)
     }
 
     /// The three components of a vector in a row. The new vector, if it was changed.
@@ -144,6 +214,24 @@ impl<'a> Entry<'a> {
     }
 }
 
+/// What a slider is like.
+#[derive(Clone, Debug)]
+pub struct Slid {
+    /// from its left end to its right
+    pub range: RangeInclusive<f64>,
+    /// whether equal ways are equal factors
+    pub logarithmic: bool,
+    /// room for the number with its unit \[points\]
+    pub number: f32,
+}
+
+impl Slid {
+    /// With room for a short number.
+    pub fn new(range: RangeInclusive<f64>, logarithmic: bool) -> Slid {
+        Slid { range, logarithmic, number: 58.0 }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::format::number;
@@ -156,6 +244,21 @@ mod tests {
             if x.is_finite() {
                 assert_eq!(parse(&with_unit(x, "m"), "m"), Some(x), "{x}");
             }
+        }
+    }
+
+    #[test]
+    fn what_was_expected_is_said() {
+        assert_eq!(read("2.5", "m", false), Ok(2.5));
+        assert_eq!(read("12", "", true), Ok(12.0));
+        for (text, unit, whole, why) in [
+            ("abc", "m", false, "A number in m, such as 2.5, 1/64, 3e-4 or 12 mm, is expected"),
+            ("1e400", "", false, "At most 1.8e308 can be computed with"),
+            ("-1e999", "m", false, "At most 1.8e308 can be computed with"),
+            ("2.5", "frames", true, "A whole number in frames is expected"),
+            ("x", "", true, "A whole number is expected"),
+        ] {
+            assert_eq!(read(text, unit, whole), Err(why.into()), "{text}");
         }
     }
 

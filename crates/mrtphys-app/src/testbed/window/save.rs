@@ -13,6 +13,7 @@ pub fn scene(app: &mut Testbed, context: &egui::Context, path: PathBuf) {
     let ticket = app.jobs.begin("Saving the scene", false, context);
     let camera = app.desk.camera;
     let (eye, look_at, up, fov_deg) = (camera.eye, camera.look_at, camera.up, camera.fov_deg);
+    let saved = app.desk.when_saved();
     app.preferences.touch(&path);
     app.desk.send(Command::Ask(Box::new(move |studio| {
         // Physics waits for the copy only.
@@ -20,7 +21,11 @@ pub fn scene(app: &mut Testbed, context: &egui::Context, path: PathBuf) {
         loaded.scene.camera = Some(mrtphys_scene::scene::Camera { eye, look_at, up, fov_deg });
         std::thread::spawn(move || {
             let text = mrtphys_scene::to_toml(&loaded).map_err(|e| e.to_string());
-            ticket.end(text.and_then(|text| write(&path, text.as_bytes())).map(Some));
+            let written = text.and_then(|text| write(&path, text.as_bytes()));
+            if written.is_ok() {
+                saved();
+            }
+            ticket.end(written.map(Some));
         });
     })));
 }

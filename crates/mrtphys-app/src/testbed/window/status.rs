@@ -112,7 +112,7 @@ impl Status {
             n.ledger.entries().map(|(k, x)| (k.to_string(), json!(x))).into_iter().collect();
         json!({
             "name": desk.name, "title": report.title, "opened": desk.opened, "running": report.running,
-            "frame": n.frame, "time": n.time, "steps": n.steps, "fps": n.settings.fps,
+            "bodies": side.shot.stage.body_count(), "frame": n.frame, "time": n.time, "steps": n.steps, "fps": n.settings.fps,
             "steps_per_frame": n.settings.steps_per_frame, "broad_phase": n.settings.broad_phase.to_string(),
             "energy": energy(&n.energy), "initial_energy": energy(&n.initial_energy), "ledger": ledger,
             "counters": counters(&n.totals), "last_step": counters(&n.counters),

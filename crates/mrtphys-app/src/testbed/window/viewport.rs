@@ -187,7 +187,7 @@ impl Viewport {
     }
 
     fn keys(ui: &mut egui::Ui, desk: &mut Desk) {
-        if ui.ctx().egui_wants_keyboard_input() {
+        if desk.keys_taken || ui.ctx().egui_wants_keyboard_input() {
             return;
         }
         let pressed = |keys: Modifiers, key: Key| ui.input_mut(|i| i.consume_key(keys, key));
@@ -213,7 +213,7 @@ impl Viewport {
         if let Some(id) = desk.selected
             && pressed(Modifiers::NONE, Key::Delete)
         {
-            desk.session.edit(true, move |loaded| loaded.world.remove_body(id).map_err(|e| e.to_string()));
+            desk.edit(true, move |loaded| loaded.world.remove_body(id).map_err(|e| e.to_string()));
             desk.selected = None;
         }
     }

@@ -5,6 +5,7 @@ use crate::testbed::window::action::Action;
 use crate::testbed::window::desk::Desk;
 use crate::testbed::window::format::{brief, count, reading};
 use crate::testbed::window::pending::Pending;
+use crate::testbed::window::quantity::{Entry, Slid};
 use crate::testbed::window::table::{Row, rows};
 use eframe::egui;
 use std::time::Instant;
@@ -58,17 +59,17 @@ impl Animation {
         let now = Instant::now();
         let hint = "Frames per second of animation time [1/s]. Setting it begins the frame counter anew";
         let mut fps = self.fps.shown(numbers.settings.fps, now);
-        let slider = rate(ui, "Frames per Second", hint, &mut fps, FPS);
+        let (slider, changed) = rate(ui, "Frames per Second", hint, &mut fps, FPS);
         desk.probes.mark("animation.fps", &slider);
-        if slider.changed() {
+        if changed {
             self.fps.ask(fps, now);
             desk.send(Command::Fps(fps.max(1)));
         }
         let hint = "Physical steps that a frame is divided into: more of them are more exact and slower. The frame counter goes on";
         let mut steps = self.steps.shown(numbers.settings.steps_per_frame, now);
-        let slider = rate(ui, "Physical Steps per Frame", hint, &mut steps, STEPS);
+        let (slider, changed) = rate(ui, "Physical Steps per Frame", hint, &mut steps, STEPS);
         desk.probes.mark("animation.steps", &slider);
-        if slider.changed() {
+        if changed {
             self.steps.ask(steps, now);
             desk.send(Command::StepsPerFrame(steps.max(1)));
         }
@@ -91,17 +92,13 @@ impl Animation {
         if mode == RealTime::Off {
             return;
         }
-        let mut speed = self.speed.shown(pace.speed, now);
+        let speed = self.speed.shown(pace.speed, now);
         let hint = "Seconds of animation time for a second of real time: 0.1 is slow motion";
         ui.label("Speed").on_hover_text(hint);
-        let slider = egui::Slider::new(&mut speed, SPEEDS)
-            .logarithmic(true)
-            .suffix(" \u{d7}")
-            .max_decimals(3)
-            .clamping(egui::SliderClamping::Edits);
-        let slider = super::slider(ui, slider).on_hover_text(hint);
+        let entry = Entry { range: SPEEDS, ..Entry::any("\u{d7}", 1.0, hint) };
+        let (slider, new) = entry.slider(ui, speed, &Slid::new(SPEEDS, true));
         desk.probes.mark("animation.speed", &slider);
-        if slider.changed() && speed > 0.0 {
+        if let Some(speed) = new {
             self.speed.ask(speed, now);
             desk.send(Command::Speed(speed));
         }
@@ -151,10 +148,10 @@ fn rate(
     hint: &str,
     value: &mut u32,
     range: std::ops::RangeInclusive<u32>,
-) -> egui::Response {
+) -> (egui::Response, bool) {
     ui.label(name).on_hover_text(hint);
-    let slider = egui::Slider::new(value, range).logarithmic(true).clamping(egui::SliderClamping::Edits);
-    super::slider(ui, slider).on_hover_text(hint)
+    let slid = Slid::new(f64::from(*range.start())..=f64::from(*range.end()), true);
+    Entry::whole("", range, hint).count_slider(ui, value, &slid)
 }
 
 fn clock_rows(n: &Numbers) -> Vec<Row<'static>> {

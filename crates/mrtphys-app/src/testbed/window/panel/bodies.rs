@@ -100,7 +100,10 @@ impl Bodies {
             .on_hover_text("shows only bodies whose name or kind has these words");
         self.list(ui, desk);
         ui.add_space(4.0);
-        egui::CollapsingHeader::new("Add a body").default_open(false).show(ui, |ui| self.form.show(ui, desk));
+        let form = egui::CollapsingHeader::new("Add a body").default_open(false);
+        let shown = form.show_unindented(ui, |ui| self.form.show(ui, desk));
+        let header = shown.header_response.on_hover_text("a form for a new body");
+        desk.probes.mark("bodies.add", &header);
     }
 
     fn list(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
@@ -232,7 +235,7 @@ impl Form {
                 desk.probes.mark("add-body", &added);
                 if added.clicked() {
                     self.changed = Some(desk.report().troubles);
-                    desk.session.edit(true, move |loaded| making::add(loaded, &pattern, near).map(drop));
+                    desk.edit(true, move |loaded| making::add(loaded, &pattern, near).map(drop));
                 }
                 let hint =
                     "shoots the body from the eye along the middle line of sight, from where that enters the walls (B)";

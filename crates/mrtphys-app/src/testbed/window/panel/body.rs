@@ -38,7 +38,6 @@ impl Body {
             ui.label(egui::RichText::new(text).weak());
             return;
         };
-        let scale = Scale::of(&body);
         ui.horizontal_wrapped(|ui| {
             ui.strong(&name);
             let fixed = if body.mass == Real::INFINITY { ", fixed" } else { "" };
@@ -47,21 +46,27 @@ impl Body {
                 ui.colored_label(ui.visuals().error_fg_color, "set aside: its motion was no longer finite");
             }
         });
-        egui::Grid::new("body properties").num_columns(2).spacing([6.0, 4.0]).show(ui, |ui| {
-            self.substance(ui, desk, &body, id);
-            self.place(ui, desk, &body, id, &scale);
-            self.motion(ui, desk, &body, id, &scale);
-            self.energies(ui, desk, &body, id);
-        });
-        self.surface(ui, desk, &body, id);
-        self.actions(ui, desk, &body, id);
+        // A field belongs to its body: what is typed in it does not go over to the next one.
+        ui.push_id(id, |ui| self.properties(ui, desk, &body, id));
         self.complaint(ui, desk);
+    }
+
+    fn properties(&mut self, ui: &mut egui::Ui, desk: &mut Desk, body: &State, id: BodyId) {
+        let scale = Scale::of(body);
+        egui::Grid::new("body properties").num_columns(2).spacing([6.0, 4.0]).show(ui, |ui| {
+            self.substance(ui, desk, body, id);
+            self.place(ui, desk, body, id, &scale);
+            self.motion(ui, desk, body, id, &scale);
+            self.energies(ui, desk, body, id);
+        });
+        self.surface(ui, desk, body, id);
+        self.actions(ui, desk, body, id);
     }
 
     /// Changes the world, and remembers when.
     fn edit(&mut self, desk: &Desk, looks: bool, change: impl Fn(&mut World) -> mrtphys::Result<()> + Send + 'static) {
         self.changed = Some(desk.report().troubles);
-        desk.session.edit(looks, move |loaded| change(&mut loaded.world).map_err(|e| e.to_string()));
+        desk.edit(looks, move |loaded| change(&mut loaded.world).map_err(|e| e.to_string()));
     }
 
     /// What was wrong with the last change.
@@ -78,7 +83,7 @@ impl Body {
         ui.horizontal(|ui| {
             if !fixed {
                 let entry = Entry::positive("kg", body.mass, "mass; velocities stay");
-                if let Some(m) = entry.show(ui, body.mass).filter(|m| *m > 0.0) {
+                if let Some(m) = entry.show(ui, body.mass) {
                     self.edit(desk, false, move |w| w.set_mass(id, Mass::Value(m)));
                 }
             }
@@ -96,7 +101,7 @@ impl Body {
         if !fixed && body.volume > 0.0 {
             ui.label("Density");
             let entry = Entry::positive("kg/m3", body.density(), "mass by volume");
-            if let Some(d) = entry.show(ui, body.density()).filter(|d| *d > 0.0) {
+            if let Some(d) = entry.show(ui, body.density()) {
                 self.edit(desk, false, move |w| w.set_mass(id, Mass::Density(d)));
             }
             ui.end_row();
@@ -198,7 +203,7 @@ impl Body {
             let hint = "color in the picture; in a lattice, of all bodies of the same kind";
             if ui.color_edit_button_srgb(&mut rgb).on_hover_text(hint).changed() {
                 self.changed = Some(desk.report().troubles);
-                desk.session.edit(true, move |loaded| making::paint(loaded, id, rgb));
+                desk.edit(true, move |loaded| making::paint(loaded, id, rgb));
             }
             ui.checkbox(&mut desk.seeing.follow, "Follow").on_hover_text("the camera moves with this body (L)");
             let trails = &mut desk.seeing.sight;
@@ -217,7 +222,7 @@ impl Body {
             }
             if ui.button("Duplicate").on_hover_text("another body like this one, beside it").clicked() {
                 self.changed = Some(desk.report().troubles);
-                desk.session.edit(true, move |loaded| making::duplicate(loaded, id).map(drop));
+                desk.edit(true, move |loaded| making::duplicate(loaded, id).map(drop));
             }
             if ui.button("Delete").on_hover_text("removes this body (Delete)").clicked() {
                 self.edit(desk, true, move |w| w.remove_body(id));

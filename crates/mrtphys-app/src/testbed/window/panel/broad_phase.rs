@@ -4,6 +4,7 @@ use crate::testbed::session::{Command, Numbers};
 use crate::testbed::window::desk::Desk;
 use crate::testbed::window::format::count;
 use crate::testbed::window::pending::Pending;
+use crate::testbed::window::quantity::{Entry, Slid};
 use crate::testbed::window::table::columns;
 use eframe::egui;
 use mrtphys::def::{Algorithm, Settings};
@@ -30,7 +31,7 @@ enum Choice {
 /// Cells along an edge of the grid, and the limits of the controls.
 const RESOLUTIONS: std::ops::RangeInclusive<u32> = 1..=1024;
 const OBJECTS: std::ops::RangeInclusive<u32> = 1..=1_000_000;
-const OBJECTS_SLIDER: std::ops::RangeInclusive<u32> = 1..=200;
+const OBJECTS_SLIDER: std::ops::RangeInclusive<f64> = 1.0..=200.0;
 const DEPTHS: std::ops::RangeInclusive<u32> = 0..=48;
 /// Resolution when a fixed one is first asked for.
 const FIRST_RESOLUTION: u32 = 20;
@@ -114,23 +115,20 @@ impl BroadPhase {
                     ui.checkbox(&mut automatic, "Resolution chosen by the grid").on_hover_text(hint);
                 });
                 if !automatic {
-                    let slider = egui::Slider::new(&mut self.fixed, RESOLUTIONS).logarithmic(true);
-                    let hint = "Cells along each edge of the grid";
-                    let slider = labelled(ui, "Resolution", hint, slider);
+                    let entry = Entry::whole("", RESOLUTIONS, "Cells along each edge of the grid");
+                    let slid = Slid::new(entry.range.clone(), true);
+                    let slider = labelled(ui, "Resolution", &entry, &slid, &mut self.fixed);
                     desk.probes.mark("acceleration.resolution", &slider);
                 }
                 *resolution = (!automatic).then_some(self.fixed);
             }
             BroadPhaseKind::AdaptiveTree { objects_per_cell, max_depth } => {
-                let slider = egui::Slider::new(objects_per_cell, OBJECTS_SLIDER)
-                    .logarithmic(true)
-                    .clamping(egui::SliderClamping::Edits);
-                let hint = "A cell with more bodies than this is divided into eight";
-                let slider = labelled(ui, "Objects per cell", hint, slider);
+                let entry = Entry::whole("", OBJECTS, "A cell with more bodies than this is divided into eight");
+                let slid = Slid::new(OBJECTS_SLIDER, true);
+                let slider = labelled(ui, "Objects per cell", &entry, &slid, objects_per_cell);
                 desk.probes.mark("acceleration.objects", &slider);
-                let hint = "Cells are not divided more often than this";
-                labelled(ui, "Deepest level", hint, egui::Slider::new(max_depth, DEPTHS));
-                *objects_per_cell = (*objects_per_cell).clamp(*OBJECTS.start(), *OBJECTS.end());
+                let entry = Entry::whole("", DEPTHS, "Cells are not divided more often than this");
+                labelled(ui, "Deepest level", &entry, &Slid::new(entry.range.clone(), false), max_depth);
             }
             BroadPhaseKind::BruteForce | BroadPhaseKind::SortedGrid => {}
         }
@@ -146,10 +144,10 @@ fn choice_of(kind: BroadPhaseKind) -> Choice {
     }
 }
 
-/// A name, and a control that fills the rest of the line.
-fn labelled(ui: &mut egui::Ui, name: &str, hint: &str, slider: egui::Slider<'_>) -> egui::Response {
-    ui.label(name).on_hover_text(hint);
-    super::slider(ui, slider).on_hover_text(hint)
+/// A name, and below it a slider with its number.
+fn labelled(ui: &mut egui::Ui, name: &str, entry: &Entry<'_>, slid: &Slid, value: &mut u32) -> egui::Response {
+    ui.label(name).on_hover_text(entry.hint);
+    entry.count_slider(ui, value, slid).0
 }
 
 fn algorithm(ui: &mut egui::Ui, settings: &Settings, desk: &mut Desk) {

@@ -4,6 +4,7 @@ use crate::testbed::session::{Command, Numbers, Sample};
 use crate::testbed::window::desk::Desk;
 use crate::testbed::window::format::{count, deviation, drift, duration};
 use crate::testbed::window::labels;
+use crate::testbed::window::quantity::Entry;
 use eframe::egui;
 use mrtphys::def::{BroadPhaseKind, FrictionLaw, ImpactMode, Integrator, Settings};
 use std::collections::VecDeque;
@@ -172,8 +173,8 @@ fn choices(ui: &mut egui::Ui, s: &mut Settings) {
         choice(ui, "Impacts", "how simultaneous impacts are answered", ImpactMode::ALL, &mut s.impact);
         choice(ui, "Integrator", "motion between impacts", Integrator::ALL, &mut s.integrator);
         ui.label("Steps per frame").on_hover_text("physical steps per frame");
-        ui.add(egui::DragValue::new(&mut s.steps_per_frame).range(1..=10_000).speed(0.1))
-            .on_hover_text("physical steps per frame: shorter steps find contacts earlier");
+        let hint = "physical steps per frame: shorter steps find contacts earlier";
+        Entry::whole("", 1..=10_000, hint).count(ui, &mut s.steps_per_frame);
         ui.end_row();
     });
 }
@@ -187,9 +188,7 @@ fn parameters(ui: &mut egui::Ui, kind: &mut BroadPhaseKind) {
                 ui.checkbox(&mut own, "").on_hover_text("a number of your own");
                 *resolution = own.then(|| resolution.unwrap_or(16));
                 match resolution {
-                    Some(n) => {
-                        drop(ui.add(egui::DragValue::new(n).range(1..=1024)).on_hover_text("cells along each axis"))
-                    }
+                    Some(n) => drop(Entry::whole("", 1..=1024, "cells along each axis").count(ui, n)),
                     None => drop(ui.weak("automatic")),
                 }
             });
@@ -198,10 +197,9 @@ fn parameters(ui: &mut egui::Ui, kind: &mut BroadPhaseKind) {
         BroadPhaseKind::AdaptiveTree { objects_per_cell, max_depth } => {
             ui.label("Objects per cell").on_hover_text("a cell with more is split");
             ui.horizontal(|ui| {
-                ui.add(egui::DragValue::new(objects_per_cell).range(1..=1_000_000))
-                    .on_hover_text("a cell with more is split");
+                Entry::whole("", 1..=1_000_000, "a cell with more is split").count(ui, objects_per_cell);
                 ui.label("depth");
-                ui.add(egui::DragValue::new(max_depth).range(0..=48)).on_hover_text("deepest level");
+                Entry::whole("", 0..=48, "deepest level").count(ui, max_depth);
             });
             ui.end_row();
         }

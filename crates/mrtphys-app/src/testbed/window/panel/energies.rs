@@ -43,6 +43,11 @@ impl Energies {
     }
 }
 
+/// A small difference, with its sign and so many decimals.
+fn signed(x: f64, decimals: usize) -> String {
+    if x == 0.0 { "0".into() } else { format!("{x:+.decimals$e}") }
+}
+
 fn joules(x: f64) -> String {
     format!("{} J", reading(x))
 }
@@ -58,7 +63,7 @@ fn energy_rows(n: &Numbers) -> Vec<Row<'static>> {
         Row::new("at the start", joules(n.initial_energy.total()), "Total energy when the first step began [J]"),
         Row::new(
             "change E/E\u{2080} - 1",
-            drift.map_or("none to compare with".into(), |d| format!("{d:+.3e}")),
+            drift.map_or("none to compare with".into(), |d| signed(d, 3)),
             "The total energy now against that at the start: zero in a closed system without friction. The ledger says what a change is made of",
         ),
     ]
@@ -74,7 +79,7 @@ fn ledger_rows(n: &Numbers) -> Vec<Row<'static>> {
     let rest = n.energy.total() - sum;
     list.push(Row::new(
         "not accounted for",
-        format!("{rest:+.1e} J"),
+        format!("{} J", signed(rest, 1)),
         "The energy now less the sum: nothing but rounding, however long it runs [J]",
     ));
     list
@@ -108,8 +113,9 @@ mod tests {
         assert_eq!(said(&energies, "kinetic"), "3.000000 J");
         assert_eq!(said(&energies, "total"), "3.500000 J");
         assert_eq!(said(&energies, "change E/E\u{2080} - 1"), "-2.222e-1");
+        assert_eq!([signed(0.0, 3), signed(-0.0, 1), signed(2e-15, 1)], ["0", "0", "+2.0e-15"]);
         assert_eq!(said(&ledger, "sum"), said(&ledger, "total now"));
-        assert_eq!(said(&ledger, "not accounted for"), "+0.0e0 J");
+        assert_eq!(said(&ledger, "not accounted for"), "0 J");
         assert_eq!(said(&ledger, "friction"), "-1.500000 J");
     }
 }

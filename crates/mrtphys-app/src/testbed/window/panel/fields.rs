@@ -53,29 +53,18 @@ pub struct Placed {
     pub field: Field,
     /// its number among the force fields, or among the flow fields
     pub number: usize,
-    /// what carries it and what it acts on, in words; empty: it stands still and acts on everything
-    pub scope: String,
+    /// what carries it and what it acts on
+    pub scope: ScopeDesc,
 }
 
 /// All fields: forces first.
 pub fn all(loaded: &Loaded) -> Vec<Placed> {
     let scene = &loaded.scene;
     let forces = scene.force_fields.iter().enumerate();
-    let forces = forces.map(|(number, f)| Placed { field: Field::Force(f.kind), number, scope: words(&f.scope) });
+    let forces = forces.map(|(number, f)| Placed { field: Field::Force(f.kind), number, scope: f.scope.clone() });
     let flows = scene.flow_fields.iter().enumerate();
-    let flows = flows.map(|(number, f)| Placed { field: Field::Flow(f.kind), number, scope: words(&f.scope) });
+    let flows = flows.map(|(number, f)| Placed { field: Field::Flow(f.kind), number, scope: f.scope.clone() });
     forces.chain(flows).collect()
-}
-
-fn words(scope: &ScopeDesc) -> String {
-    let mut parts = Vec::new();
-    if let Some(carrier) = &scope.carrier {
-        parts.push(format!("carried by {carrier}{}", if scope.reaction { "" } else { ", without reaction" }));
-    }
-    if let Some(only) = &scope.only {
-        parts.push(format!("acts only on {}", only.join(", ")));
-    }
-    parts.join("; ")
 }
 
 /// Replaces a field.
@@ -166,7 +155,7 @@ fn earth(gravity: Vec3, before: Vec3) -> ForceKind {
 }
 
 /// The world's handle of a field of the scene: both keep the same order.
-fn id_of(loaded: &Loaded, number: usize, field: &Field) -> Result<FieldId, String> {
+pub fn id_of(loaded: &Loaded, number: usize, field: &Field) -> Result<FieldId, String> {
     let id = match field {
         Field::Force(_) => loaded.world.force_ids().nth(number),
         Field::Flow(_) => loaded.world.flow_ids().nth(number),
@@ -174,7 +163,8 @@ fn id_of(loaded: &Loaded, number: usize, field: &Field) -> Result<FieldId, Strin
     id.ok_or_else(|| "this field is there no more".into())
 }
 
-fn plain(e: mrtphys::Error) -> String {
+/// In words.
+pub fn plain(e: mrtphys::Error) -> String {
     e.to_string()
 }
 
@@ -220,7 +210,7 @@ mod tests {
         set_gravity(&mut l, Vec3::Y * -2.0).unwrap();
         assert_eq!(l.world.forces().len(), 2);
         assert!((speed_after_a_second(&mut l) - Vec3::new(1.0, -2.0, 0.0)).length() < 1e-9);
-        assert_eq!(all(&l)[0].scope, "acts only on ball");
+        assert_eq!(all(&l)[0].scope.only, Some(vec!["ball".to_string()]));
     }
 
     #[test]

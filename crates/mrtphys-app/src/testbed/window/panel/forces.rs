@@ -1,11 +1,11 @@
 //! Section Forces (thesis, appendix B.2): gravity and viscosity, and all other force and flow fields.
 
 use super::fields::{self, Field, Placed, STANDARD};
+use super::scope;
 use crate::testbed::window::ask::Inquiry;
 use crate::testbed::window::desk::Desk;
-use crate::testbed::window::format::number;
 use crate::testbed::window::pending::Pending;
-use crate::testbed::window::quantity::Entry;
+use crate::testbed::window::quantity::{Entry, Slid};
 use eframe::egui;
 use mrtphys::def::Settings;
 use mrtphys::{Real, Vec3};
@@ -33,7 +33,6 @@ pub struct Forces {
 impl Forces {
     /// Shows it.
     pub fn show(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
-        ui.spacing_mut().slider_width = (ui.available_width() - 130.0).clamp(80.0, 400.0);
         self.gravity(ui, desk);
         ui.add_space(4.0);
         self.medium(ui, desk);
@@ -55,6 +54,16 @@ impl Forces {
         desk.session.edit(false, change);
     }
 
+    /// Changes what would have to be made again if it were not saved.
+    fn make(
+        &mut self,
+        desk: &Desk,
+        change: impl Fn(&mut mrtphys_scene::Loaded) -> Result<(), String> + Send + 'static,
+    ) {
+        self.changed = Some(desk.report().troubles);
+        desk.edit(false, change);
+    }
+
     fn set_gravity(&mut self, desk: &Desk, gravity: Vec3) {
         self.gravity.ask(gravity, Instant::now());
         self.edit(desk, move |loaded| fields::set_gravity(loaded, gravity));
@@ -66,14 +75,11 @@ impl Forces {
         let direction = gravity.try_normalize().or(self.direction).unwrap_or(Vec3::Y * -1.0);
         self.direction = Some(direction);
         ui.label("Gravity");
-        let mut g = gravity.length();
-        let slider = egui::Slider::new(&mut g, 0.0..=MOST)
-            .suffix(" m/s2")
-            .clamping(egui::SliderClamping::Never)
-            .custom_formatter(|x, _| number(x));
-        let response = ui.add(slider).on_hover_text("acceleration of gravity; more than the slider has can be typed");
+        let hint = "acceleration of gravity; more than the slider has can be typed";
+        let slid = Slid { number: 110.0, ..Slid::new(0.0..=MOST, false) };
+        let (response, new) = Entry::positive("m/s2", 1.0, hint).slider(ui, gravity.length(), &slid);
         desk.probes.mark("gravity", &response);
-        if response.changed() && g.is_finite() {
+        if let Some(g) = new {
             self.set_gravity(desk, direction * g);
         }
         ui.horizontal(|ui| {
@@ -87,8 +93,10 @@ impl Forces {
             if ui.button("Off").on_hover_text("no gravity").clicked() {
                 self.set_gravity(desk, Vec3::ZERO);
             }
-            let entry = Entry::any("", 1.0, "where gravity points; any length");
+        });
+        ui.horizontal(|ui| {
             ui.label("towards");
+            let entry = Entry::any("", 1.0, "where gravity points; any length");
             if let Some(new) = entry.vector(ui, direction).and_then(Vec3::try_normalize) {
                 self.direction = Some(new);
                 self.set_gravity(desk, new * gravity.length());
@@ -99,12 +107,12 @@ impl Forces {
     fn medium(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         let settings = desk.report().sides[0].numbers.settings.clone();
         ui.label("Viscosity");
-        let mut viscosity = self.viscosity.shown(settings.viscosity, Instant::now());
+        let viscosity = self.viscosity.shown(settings.viscosity, Instant::now());
         let hint = "0 void to 1 very tough: velocity relaxes to that of the medium as (1 - viscosity)^(t / 1 s)";
-        let slider = egui::Slider::new(&mut viscosity, 0.0..=1.0).custom_formatter(|x, _| number(x));
-        let response = ui.add(slider).on_hover_text(hint);
+        let entry = Entry { range: 0.0..=1.0, ..Entry::any("", 0.2, hint) };
+        let (response, new) = entry.slider(ui, viscosity, &Slid::new(0.0..=1.0, false));
         desk.probes.mark("viscosity", &response);
-        if response.changed() {
+        if let Some(viscosity) = new {
             self.viscosity.ask(viscosity, Instant::now());
             self.set(desk, move |s| s.viscosity = viscosity);
         }
@@ -162,17 +170,18 @@ impl Forces {
             ui.push_id((is_flow, placed.number), |ui| {
                 ui.horizontal(|ui| {
                     ui.strong(placed.field.name());
-                    if !placed.scope.is_empty() {
-                        ui.weak("(scope)").on_hover_text(&placed.scope);
-                    }
                     if ui.small_button("Remove").on_hover_text("takes this field away").clicked() {
                         let Placed { number, field, .. } = *placed;
-                        self.edit(desk, move |loaded| fields::remove(loaded, number, &field));
+                        self.make(desk, move |loaded| fields::remove(loaded, number, &field));
                     }
                 });
+                if let Some(new) = scope::show(ui, desk, placed) {
+                    let Placed { number, field, .. } = *placed;
+                    self.make(desk, move |loaded| scope::set(loaded, number, &field, &new));
+                }
                 if let Some(field) = parameters(ui, &placed.field, size) {
                     let number = placed.number;
-                    self.edit(desk, move |loaded| fields::set(loaded, number, field));
+                    self.make(desk, move |loaded| fields::set(loaded, number, field));
                 }
             });
         }
@@ -181,7 +190,7 @@ impl Forces {
             ui.menu_button("Add a field", |ui| {
                 for field in Field::choices(at, size) {
                     if ui.button(field.name()).on_hover_text("at the point that the camera looks at").clicked() {
-                        self.edit(desk, move |loaded| fields::add(loaded, field));
+                        self.make(desk, move |loaded| fields::add(loaded, field));
                         ui.close();
                     }
                 }
@@ -217,7 +226,10 @@ fn parameters(ui: &mut egui::Ui, field: &Field, size: Real) -> Option<Field> {
             scalar(ui, "strength", &Entry::any(&unit, *strength, hint), strength, &mut changed);
             ui.label("exponent");
             let hint = "2: gravitation of a point; -1: a spring";
-            changed |= ui.add(egui::DragValue::new(exponent).range(-16..=16).speed(0.05)).on_hover_text(hint).changed();
+            let entry = Entry { range: -16.0..=16.0, whole: true, ..Entry::any("", 10.0, hint) };
+            if let Some(x) = entry.show(ui, f64::from(*exponent)) {
+                (*exponent, changed) = (x as i32, true);
+            }
             ui.end_row();
         }
         Field::Force(ForceKind::Vortex { point, axis, strength }) => {

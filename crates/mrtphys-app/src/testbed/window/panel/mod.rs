@@ -13,6 +13,7 @@ mod making;
 mod overlays;
 mod plots;
 mod render;
+mod scope;
 mod stages;
 
 use super::desk::Desk;
@@ -169,17 +170,4 @@ impl Panel {
             (section.show)(ui, desk);
         }
     }
-}
-
-/// A slider as wide as the panel allows, with its number at the right.
-pub fn slider(ui: &mut egui::Ui, slider: egui::Slider<'_>) -> egui::Response {
-    // Room for the number with its unit.
-    const NUMBER: f32 = 58.0;
-    ui.scope(|ui| {
-        let gap = ui.spacing().item_spacing.x;
-        ui.spacing_mut().interact_size.x = NUMBER;
-        ui.spacing_mut().slider_width = (ui.available_width() - NUMBER - gap).max(40.0);
-        ui.add(slider)
-    })
-    .inner
 }

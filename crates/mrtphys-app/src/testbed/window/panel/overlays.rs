@@ -2,6 +2,7 @@
 
 use crate::testbed::window::desk::Desk;
 use crate::testbed::window::format::{count, number};
+use crate::testbed::window::quantity::{Entry, Slid};
 use crate::testbed::window::seeing::{LONGEST_TRAIL, Layer};
 use eframe::egui::{self, Color32};
 use mrtphys_view::explain::Inks;
@@ -34,8 +35,13 @@ impl Overlays {
         }
         ui.horizontal(|ui| {
             ui.label("Trail");
-            let slider = egui::Slider::new(&mut desk.seeing.sight.trail, 2..=LONGEST_TRAIL).logarithmic(true);
-            ui.add(slider.suffix(" frames")).on_hover_text("length of trails; they come from the recording");
+            let entry =
+                Entry::whole("frames", 2..=LONGEST_TRAIL as u32, "length of trails; they come from the recording");
+            let mut trail = desk.seeing.sight.trail as u32;
+            let slid = Slid { number: 86.0, ..Slid::new(entry.range.clone(), true) };
+            if entry.count_slider(ui, &mut trail, &slid).1 {
+                desk.seeing.sight.trail = trail as usize;
+            }
         });
         ui.checkbox(&mut desk.seeing.labels, "Names and speeds")
             .on_hover_text("name and speed stand beside the selected body and the one under the mouse");

@@ -3,7 +3,7 @@
 use crate::testbed::window::ask::Inquiry;
 use crate::testbed::window::desk::Desk;
 use crate::testbed::window::format::{brief, deviation, number};
-use crate::testbed::window::plot::{Chart, Gas, Histogram, Trace, csv, curves, power_of_ten};
+use crate::testbed::window::plot::{Chart, Gas, Histogram, Trace, csv, curves, grid, power_of_ten};
 use eframe::egui::{self, Color32};
 use egui_plot::{Bar, BarChart, HoverPosition, Line, LineStyle, Plot, PlotPoints, VLine};
 use mrtphys_view::Stage;
@@ -236,6 +236,9 @@ fn frame<'a>(chart: Chart, reset: bool) -> Plot<'a> {
         .y_axis_label(chart.unit())
         .y_axis_min_width(52.0)
         .y_axis_formatter(|mark, _| number(mark.value))
+        .x_grid_spacer(|input| grid::marks(&input, 90.0))
+        .y_grid_spacer(|input| grid::marks(&input, 32.0))
+        .grid_spacing(egui::Rangef::new(grid::FINEST, 900.0))
         .allow_scroll(false)
         .set_margin_fraction(egui::vec2(0.01, 0.08));
     if reset { plot.reset() } else { plot }

@@ -2,6 +2,7 @@
 
 use crate::testbed::window::action::Action;
 use crate::testbed::window::desk::Desk;
+use crate::testbed::window::typed::Typed;
 use eframe::egui;
 use mrtphys_view::mesh::FINEST;
 use mrtphys_view::{Illumination, Mode, Quality, Theme};
@@ -82,6 +83,19 @@ fn meaning(place: u8) -> String {
     }
 }
 
+/// The place of what was typed: so many triangles at least, as far as there are so many.
+fn place_of(text: &str) -> Option<u8> {
+    let number = text.trim().trim_end_matches("triangles").trim_end();
+    match number.parse::<f64>() {
+        Ok(0.0) => Some(0),
+        Ok(n) if n > 0.0 => {
+            let level = (0..=FINEST).find(|l| f64::from(20 * 4u32.pow((*l).into())) >= n);
+            Some(level.unwrap_or(FINEST) + 1)
+        }
+        _ => (!number.is_empty() && "automatic".starts_with(&number.to_lowercase())).then_some(0),
+    }
+}
+
 /// The section.
 #[derive(Default)]
 pub struct Render {
@@ -116,14 +130,7 @@ impl Render {
             illumination(ui, &mut desk.look.illumination);
             ui.end_row();
             ui.label("Triangulation").on_hover_text("how finely spheres are triangulated");
-            let mut slider = place(desk.look.quality);
-            let widget = egui::Slider::new(&mut slider, 0..=FINEST + 1)
-                .custom_formatter(|x, _| meaning(x as u8))
-                .custom_parser(|text| text.parse().ok());
-            let hint = "automatic: as finely as its size in the picture needs to look round; else all spheres alike";
-            if ui.add(widget).on_hover_text(hint).changed() {
-                desk.look.quality = quality(slider);
-            }
+            triangulation(ui, &mut desk.look.quality);
             ui.end_row();
             ui.label("Background").on_hover_text("light or dark (T)");
             ui.horizontal(|ui| {
@@ -141,11 +148,41 @@ impl Render {
         ui.horizontal_wrapped(|ui| {
             let look = &mut desk.look;
             ui.checkbox(&mut look.shadows, "Shadows").on_hover_text("the first light throws shadows");
-            ui.checkbox(&mut look.walls, "Walls").on_hover_text("boundaries are drawn");
+            ui.checkbox(&mut look.walls, "Boundaries").on_hover_text("the walls are drawn");
             ui.checkbox(&mut look.marks, "Marks").on_hover_text("spheres bear marks, by which one sees them spin");
         });
         smoothing(ui, &mut desk.look.smooth);
     }
+}
+
+fn triangulation(ui: &mut egui::Ui, chosen: &mut Quality) {
+    let mut slid = place(*chosen);
+    let hint = "automatic: as finely as its size in the picture needs to look round; else all spheres alike";
+    let read = |text: &str| {
+        let place = place_of(text).ok_or("A number of triangles is expected, or 'automatic'")?;
+        Ok(f64::from(place))
+    };
+    ui.horizontal(|ui| {
+        ui.spacing_mut().slider_width = 80.0;
+        let slider = egui::Slider::new(&mut slid, 0..=FINEST + 1).show_value(false);
+        let mut changed = ui.add(slider).on_hover_text(hint).changed();
+        let typed = Typed {
+            shown: &|x| meaning(x as u8),
+            read: &read,
+            range: 0.0..=f64::from(FINEST + 1),
+            speed: 0.05,
+            width: None,
+            suffix: String::new(),
+            hint,
+            exact: String::new(),
+        };
+        if let Some(new) = typed.show(ui, f64::from(slid)).1 {
+            (slid, changed) = (new.round() as u8, true);
+        }
+        if changed {
+            *chosen = quality(slid);
+        }
+    });
 }
 
 fn illumination(ui: &mut egui::Ui, value: &mut Illumination) {
@@ -183,6 +220,16 @@ mod tests {
             let (rendering, shading) = parts(m);
             assert_eq!(mode(rendering, shading.unwrap_or_default()), m, "{name}");
         }
+    }
+
+    #[test]
+    fn what_is_typed_is_a_number_of_triangles() {
+        for p in 0..=FINEST + 1 {
+            assert_eq!(place_of(&meaning(p)), Some(p));
+        }
+        let read = ["300", "1e300", "auto", "0"].map(place_of);
+        assert_eq!(read, [Some(3), Some(FINEST + 1), Some(0), Some(0)]);
+        assert_eq!(["", "-5", "many", "nan"].map(place_of), [None; 4]);
     }
 
     #[test]

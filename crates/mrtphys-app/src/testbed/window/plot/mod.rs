@@ -3,6 +3,7 @@
 mod csv;
 mod curves;
 mod gas;
+pub mod grid;
 mod speeds;
 mod trace;
 

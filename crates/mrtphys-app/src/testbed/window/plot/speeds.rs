@@ -4,8 +4,10 @@ use std::f64::consts::PI;
 
 /// Bins of the histogram for many bodies; few bodies have fewer, so that a bin has some.
 const BINS: usize = 40;
-/// Points of the expected curve between the edges of a bin.
+/// Parts of a bin in each half of which the expected number is summed.
 const FINE: usize = 4;
+/// Parts of the expected curve: so many that its corners are not seen.
+const SMOOTH: usize = 200;
 /// A bin that is expected to have fewer says nothing about chi squared.
 const FEWEST: f64 = 5.0;
 
@@ -56,10 +58,10 @@ impl Histogram {
         };
         let expected = (0..bins).map(inside).collect();
         let point = |k: usize| {
-            let v = width * k as f64 / FINE as f64;
+            let v = end * k as f64 / SMOOTH as f64;
             [v, density(v) * width]
         };
-        Some(Histogram { width, counts, expected, curve: (0..=bins * FINE).map(point).collect() })
+        Some(Histogram { width, counts, expected, curve: (0..=SMOOTH).map(point).collect() })
     }
 
     /// Sum over the bins of (counted - expected)^2/expected, and how many bins there are in it. In equilibrium the sum is about

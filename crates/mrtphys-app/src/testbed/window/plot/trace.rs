@@ -87,7 +87,10 @@ pub fn grouped(moments: &[Moment], most: usize) -> Vec<Moment> {
         group[1..].iter().for_each(|m| merge(&mut all, m));
         Some(all)
     };
-    moments.chunks(size).filter_map(together).collect()
+    // What is left at the end goes to the last group: a mean of a few would stand out from the others.
+    let groups = (moments.len() / size).max(1);
+    let end = |i: usize| if i + 1 == groups { moments.len() } else { (i + 1) * size };
+    (0..groups).filter_map(|i| together(&moments[i * size..end(i)])).collect()
 }
 
 /// Two moments as one: the state is that of the later, the rest is summed.
@@ -179,6 +182,9 @@ mod tests {
         assert_eq!((groups.len(), groups.iter().map(|m| m.frames).sum::<u64>()), (200, 1000));
         assert!(groups.iter().all(|m| m.per_second(m.counts.sphere_tests) == Some(32.0)));
         assert_eq!(grouped(&moments[..7], 240).len(), 7);
+        let uneven = grouped(&moments[..481], 240);
+        assert!(uneven.len() <= 240 && uneven.iter().all(|m| (3..6).contains(&m.frames)), "{}", uneven.len());
+        assert_eq!(uneven.iter().map(|m| m.frames).sum::<u64>(), 481);
         assert!(grouped(&[], 240).is_empty());
     }
 
