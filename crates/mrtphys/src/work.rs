@@ -48,7 +48,7 @@ pub struct Work {
     pub stages: StageTimes,
 }
 
-/// Memory that sorting the storage needs, kept so that no step allocates once warm.
+/// Memory that sorting the storage needs, kept from one time to the next.
 #[derive(Clone, Debug, Default)]
 pub struct Spare {
     /// for the translations

@@ -7,6 +7,7 @@
 //! (Counting-sorted cell lists: algorithms of molecular dynamics, e.g. Rapaport 2004, section 3.4. Hierarchical grids:
 //! Ericson 2005, section 7.2.)
 
+mod blocks;
 mod cells;
 mod dense;
 mod lanes;
@@ -17,8 +18,9 @@ use super::{BoundsView, BroadPhase, Candidates, Cell};
 use crate::bounds::{Aabb, Ball};
 use crate::math::{Real, Vec3, max, min};
 use crate::par;
+use blocks::Parts;
 use cells::Frame;
-use dense::{Dense, Parts};
+use dense::Dense;
 use sparse::Sparse;
 use survey::Seen;
 
@@ -245,9 +247,9 @@ impl Index {
     }
 }
 
-/// Cells of which all are kept for so many bodies.
+/// Cells of which all are kept for so many bodies. With the empty ones round thin boxes their numbers stay below 2^32.
 fn affordable(bodies: usize) -> usize {
-    DENSE_CELLS_MIN.max(DENSE_CELLS_PER_BODY * bodies)
+    (DENSE_CELLS_PER_BODY * bodies).clamp(DENSE_CELLS_MIN, 1 << 29)
 }
 
 /// Box of the centres and range of the radii of some bodies.

@@ -5,6 +5,7 @@ use super::*;
 use crate::bounds::BoundaryBounds;
 use crate::broad::BroadPhase;
 use crate::broad::sorted_grid::SortedGrid;
+use crate::broad::sorted_grid::cells::cell_of;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
