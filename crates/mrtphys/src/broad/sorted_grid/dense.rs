@@ -161,7 +161,7 @@ impl Dense {
         }
         ranges.into_par_iter().for_each(CellRange::sum_up);
         let [xy, z] = self.points.axes();
-        let arrays = [&mut self.slots[..], &mut self.cells[..], xy, z].map(|a| &*par::as_atomic(a));
+        let arrays = [&mut self.slots[..], &mut self.cells[..], xy, z].map(par::as_atomic);
         blocks.par_iter_mut().for_each(|block| block.put(arrays));
     }
 

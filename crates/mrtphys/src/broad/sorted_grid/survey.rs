@@ -137,11 +137,8 @@ impl Clear {
         // The same differences as `reaches_behind` makes, and at least its allowance for rounding: inside of the box no
         // coordinate is larger than `size`.
         let r: Real = ball[3] * (1.0 + 64.0 * Real::EPSILON) + self.allowance;
-        let mut clear = true;
-        for axis in 0..4 {
-            clear &= (ball[axis] - self.min[axis] > r) & (self.max[axis] - ball[axis] > r);
-        }
-        clear
+        let clear = |axis: usize| (ball[axis] - self.min[axis] > r) & (self.max[axis] - ball[axis] > r);
+        clear(0) & clear(1) & clear(2) & clear(3)
     }
 }
 
