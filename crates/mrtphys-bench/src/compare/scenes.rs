@@ -100,8 +100,8 @@ pub fn catalogue() -> Vec<Scene> {
         gas(Spheres, 32, 64, plan(6, 3, Some(64), 32, 82, true)),
         gas(Spheres, 47, 512, plan(5, 3, None, 24, 40, true)),
         gas(Spheres, 47, 64, plan(2, 3, None, 5, 12, true)),
-        gas(Spheres, 100, 512, plan(2, 2, None, 2, 6, false)),
-        gas(Spheres, 100, 64, plan(1, 2, None, 1, 3, false)),
+        gas(Spheres, 100, 512, plan(3, 3, None, 2, 11, false)),
+        gas(Spheres, 100, 64, plan(2, 3, None, 1, 7, false)),
     ]
 }
 
