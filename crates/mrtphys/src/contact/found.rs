@@ -129,3 +129,49 @@ impl FoundContacts {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::Other;
+    use crate::math::Vec3;
+
+    /// A contact with this key, and one point of its own.
+    fn add(block: &mut Block, key: u64) {
+        let first_point = block.touches.points.len() as u32;
+        block.touches.points.push(Vec3::splat(key as f64));
+        let (a, b) = (0, Other::Wall(0));
+        let (normal, point) = (Vec3::X, Vec3::ZERO);
+        block.contacts.push(Contact { key, a, b, feature: 0, normal, point, depth: 0.0, first_point, point_count: 1 });
+    }
+
+    fn check(list: &ContactList, keys: &[u64]) {
+        assert_eq!(list.list.iter().map(|c| c.key).collect::<Vec<_>>(), keys);
+        for c in &list.list {
+            assert_eq!(list.points[c.first_point as usize], Vec3::splat(c.key as f64), "points go with their contacts");
+        }
+    }
+
+    #[test]
+    fn the_order_is_that_of_the_keys_lent_or_looked_at_and_of_this_step() {
+        for many in [1, 2000] {
+            let blocks = |count: usize| (vec![Block::default(); count], count);
+            let mut found = FoundContacts { pairs: blocks(2), walls: blocks(1), ..FoundContacts::default() };
+            for key in (0..many).rev() {
+                add(&mut found.pairs.0[0], 3 * key + 2);
+                add(&mut found.pairs.0[1], 3 * key);
+                add(&mut found.walls.0[0], 3 * key + 1);
+            }
+            let keys: Vec<u64> = (0..3 * many).collect();
+            assert_eq!(found.count(), keys.len());
+            check(found.ordered(), &keys);
+            let lent = found.take_ordered();
+            check(&lent, &keys);
+            found.give_back(lent);
+            found.walls.1 = 0;
+            found.renew();
+            let without: Vec<u64> = keys.iter().copied().filter(|k| k % 3 != 1).collect();
+            check(&found.take_ordered(), &without);
+        }
+    }
+}

@@ -83,3 +83,40 @@ impl ContactMemory {
         ContactMemory { found: keys, keys: OnceLock::new() }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::Other;
+    use crate::math::Vec3;
+
+    fn contact(key: u64) -> Contact {
+        let (a, b) = (0, Other::Wall(0));
+        Contact {
+            key,
+            a,
+            b,
+            feature: 0,
+            normal: Vec3::X,
+            point: Vec3::ZERO,
+            depth: 0.0,
+            first_point: 0,
+            point_count: 0,
+        }
+    }
+
+    #[test]
+    fn keys_are_ascending_whatever_the_order_was() {
+        let mode = ContactMode::Exact;
+        let [a, b, c] = [pair_key(1, 2, mode), pair_key(1, 7, mode), pair_key(3, 4, mode)];
+        let mut memory = ContactMemory::default();
+        memory.remember([c, a, b, a].map(contact).iter());
+        assert_eq!(memory.keys(), [a, b, c]);
+        assert!(memory.holds(b) && !memory.holds(pair_key(2, 7, mode)));
+        assert_eq!(memory, ContactMemory::from_keys(vec![a, b, c]));
+        memory.forget(7, mode);
+        assert_eq!(memory.keys(), [a, c]);
+        memory.remember([b].map(contact).iter());
+        assert_eq!(memory.keys(), [b], "what was asked for before is forgotten");
+    }
+}
